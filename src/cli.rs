@@ -1,0 +1,192 @@
+//! The command line: the doc comments here are the help.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::episode::Split;
+
+/// Look inside a product-of-experts fusion.
+///
+/// Without a command, opens the sample episodes and the trained model that ship with it.
+#[derive(Debug, Parser)]
+#[command(version, about, args_conflicts_with_subcommands = true)]
+pub struct Cli {
+    /// What to do; `view` if left out.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+    /// The arguments of `view`, so that it can be left out.
+    #[command(flatten)]
+    pub view: ViewArgs,
+}
+
+/// What poescope can do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Open a model on a dataset in the terminal
+    View(ViewArgs),
+    /// List a dataset: episodes, topics, types, rates, and what was left out
+    Info(InfoArgs),
+    /// Record planar pushes in simulation as a dataset
+    Simulate(SimulateArgs),
+    /// Train a model on a dataset
+    Train(TrainArgs),
+    /// Score a model's open-loop prediction against trivial predictors
+    Eval(EvalArgs),
+}
+
+/// Arguments of `view`.
+#[derive(Clone, Debug, Default, Args)]
+pub struct ViewArgs {
+    /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
+    #[arg(long)]
+    pub data: Option<PathBuf>,
+    /// Checkpoint folder; repeat for several models [default: the sample model]
+    #[arg(long)]
+    pub model: Vec<PathBuf>,
+    /// State string to start from, as copied with `y`
+    #[arg(long)]
+    pub state: Option<String>,
+    /// Keys to send first: plain characters, names in angle brackets (`<space>`), blanks ignored
+    #[arg(long)]
+    pub keys: Option<String>,
+    /// Draw one frame to standard output and exit
+    #[arg(long)]
+    pub print: bool,
+    /// Size of the printed frame, in columns x rows
+    #[arg(long, default_value = "80x24", value_parser = parse_size)]
+    pub size: (u16, u16),
+    /// How to draw images: `auto` asks the terminal
+    #[arg(long, value_enum, default_value_t)]
+    pub images: ImageProtocol,
+}
+
+/// How images reach the terminal.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum ImageProtocol {
+    /// Ask the terminal, and take half-blocks where it does not answer.
+    #[default]
+    Auto,
+    /// Half-block characters.
+    Halfblocks,
+    /// The kitty graphics protocol.
+    Kitty,
+    /// Sixel graphics.
+    Sixel,
+    /// iTerm2's inline images.
+    Iterm2,
+}
+
+/// Arguments of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// An .mcap file or a folder of them
+    pub path: PathBuf,
+    /// Print JSON instead of a table
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `simulate`.
+#[derive(Debug, Args)]
+pub struct SimulateArgs {
+    /// How many episodes
+    #[arg(long, default_value_t = 100)]
+    pub episodes: usize,
+    /// Seed: the same seed writes the same bytes, whatever the threads
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// The dataset to write
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Split the episodes are marked with
+    #[arg(long, value_parser = parse_split)]
+    pub split: Option<Split>,
+    /// T, the images of an episode
+    #[arg(long, default_value_t = 16)]
+    pub steps: usize,
+    /// W, the high-rate samples between two images
+    #[arg(long, default_value_t = 32)]
+    pub window: usize,
+    /// Rate of force, torque, position and velocity
+    #[arg(long, default_value_t = 120.0)]
+    pub rate_hz: f64,
+    /// Record only what a planar setup senses: force x, y, torque z; position x, y (the MIT set's channels)
+    #[arg(long)]
+    pub planar: bool,
+    /// Worker threads [default: one per core]
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Also write a contact sheet of the first episodes (PNG)
+    #[arg(long)]
+    pub sheet: Option<PathBuf>,
+}
+
+/// Arguments of `train`.
+#[derive(Debug, Args)]
+pub struct TrainArgs {
+    /// Dataset: an .mcap file or a folder of them
+    #[arg(long)]
+    pub data: PathBuf,
+    /// Which model: `v`, `vhp` or `v-h-p`
+    #[arg(long, default_value = "v-h-p")]
+    pub model: String,
+    /// Run folder: checkpoints, metrics, report
+    #[arg(long)]
+    pub out: PathBuf,
+    /// A config.toml to train instead of the model's own settings
+    #[arg(long)]
+    pub config: Option<PathBuf>,
+    /// Epochs over the training split
+    #[arg(long)]
+    pub epochs: Option<usize>,
+    /// Stop after this many minutes instead, with the learning rate decayed to it
+    #[arg(long)]
+    pub minutes: Option<f64>,
+    /// Seed of initial weights, order, noise and masks
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Worker threads [default: one per core]
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Go on from the run folder's last checkpoint
+    #[arg(long)]
+    pub resume: bool,
+}
+
+/// Arguments of `eval`.
+#[derive(Debug, Args)]
+pub struct EvalArgs {
+    /// Dataset to score on [default: the sample episodes]
+    #[arg(long)]
+    pub data: Option<PathBuf>,
+    /// Checkpoint folder [default: the sample model]
+    #[arg(long)]
+    pub model: Option<PathBuf>,
+    /// Split to score, where the dataset names splits
+    #[arg(long, value_parser = parse_split, default_value = "test")]
+    pub split: Split,
+    /// c, the images seen before the rollout
+    #[arg(long, default_value_t = 4)]
+    pub context: usize,
+    /// h, the images predicted
+    #[arg(long, default_value_t = 11)]
+    pub horizon: usize,
+    /// Print JSON instead of a Markdown table
+    #[arg(long)]
+    pub json: bool,
+}
+
+fn parse_size(text: &str) -> Result<(u16, u16), String> {
+    let parse = || {
+        let (columns, rows) = text.split_once('x')?;
+        Some((columns.parse().ok()?, rows.parse().ok()?))
+    };
+    parse()
+        .filter(|&(columns, rows)| (1..=1000).contains(&columns) && (1..=1000).contains(&rows))
+        .ok_or_else(|| format!("{text:?} is not COLUMNSxROWS, for example 120x40"))
+}
+
+fn parse_split(text: &str) -> Result<Split, String> {
+    Split::from_name(text).ok_or_else(|| format!("{text:?} is not train, val or test"))
+}

@@ -1,0 +1,3 @@
+//! What is learned: tensors in, tensors out. Knows no dataset file and no screen.
+
+pub mod trace;

@@ -1,0 +1,77 @@
+//! What the model says of one episode, as plain numbers: the currency between the model, the session and the measures.
+
+use serde::{Deserialize, Serialize};
+
+/// A run of diagonal Gaussians over the latent, one a belief; row major `(beliefs, Z)`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GaussianTrace {
+    /// Z, the latent's dimensions.
+    pub latent: usize,
+    /// Means.
+    pub mean: Vec<f32>,
+    /// Logarithms of the variances.
+    pub log_var: Vec<f32>,
+}
+
+impl GaussianTrace {
+    /// Number of beliefs.
+    pub fn len(&self) -> usize {
+        self.mean.len() / self.latent.max(1)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.mean.is_empty()
+    }
+
+    /// Mean and log-variance of belief `i`.
+    pub fn row(&self, i: usize) -> (&[f32], &[f32]) {
+        let range = i * self.latent..(i + 1) * self.latent;
+        (&self.mean[range.clone()], &self.log_var[range])
+    }
+}
+
+/// What each sensor expert of a model says of an episode; it does not depend on the switches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ExpertTrace {
+    /// One trace a sensor expert, in the model's order.
+    pub experts: Vec<GaussianTrace>,
+    /// The controls between beliefs, `(beliefs - 1, U)`: row i acts from belief i to i + 1.
+    pub controls: Vec<[f32; 2]>,
+}
+
+/// The filter's answer for one setting of the switches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BeliefTrace {
+    /// `p(z_t | z_{t-1}, u_{t-1})` before each belief's observations; the first is N(0, 20 I).
+    pub prior: GaussianTrace,
+    /// The product of the active experts.
+    pub posterior: GaussianTrace,
+    /// Hidden state of the recurrent network after each belief's transition, `(beliefs, hidden)`; row i has seen
+    /// belief i - 1.
+    pub hidden: Vec<f32>,
+}
+
+/// α of every expert at every belief, `(beliefs, M)` with the prior last: 0 off, 1 as trained.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Alphas {
+    /// M, the sensor experts and the prior.
+    pub experts: usize,
+    /// Row major.
+    pub values: Vec<f32>,
+}
+
+impl Alphas {
+    /// Every expert as trained.
+    pub fn trained(beliefs: usize, experts: usize) -> Self {
+        Self {
+            experts,
+            values: vec![1.0; beliefs * experts],
+        }
+    }
+
+    /// α of each expert at belief `i`.
+    pub fn row(&self, i: usize) -> &[f32] {
+        &self.values[i * self.experts..(i + 1) * self.experts]
+    }
+}
