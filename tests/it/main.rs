@@ -1,0 +1,1 @@
+//! What crosses folders, one module a theme.
