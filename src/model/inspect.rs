@@ -1,5 +1,7 @@
 //! A trained model as plain numbers in and out, on the mean path: what the session and the evaluation ask of it.
 
+use std::borrow::Borrow;
+
 use candle_core::{Device, Result, Tensor};
 
 use super::filter::{self, Inputs};
@@ -9,11 +11,10 @@ use super::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
 use super::{Model, Weights};
 use crate::episode::Frame;
 
-/// A model with its weights folded once.
+/// A model, owned or borrowed, with its weights folded once.
 #[derive(Debug)]
-pub struct Inspector {
-    /// The model.
-    pub model: Model,
+pub struct Inspector<M = Model> {
+    model: M,
     weights: Weights,
 }
 
@@ -26,19 +27,22 @@ fn trace(gaussian: &DiagGaussian, latent: usize) -> Result<GaussianTrace> {
     })
 }
 
-impl Inspector {
+impl<M: Borrow<Model>> Inspector<M> {
     /// Folds the weights of `model`.
-    pub fn new(model: Model) -> Result<Self> {
-        let weights = model.weights()?.detach();
+    pub fn new(model: M) -> Result<Self> {
+        let weights = model.borrow().weights()?.detach();
         Ok(Self { model, weights })
+    }
+
+    /// The model.
+    pub fn model(&self) -> &Model {
+        self.model.borrow()
     }
 
     /// Each expert's Gaussian at each belief of `observations`.
     pub fn encode(&self, observations: &Observations) -> Result<ExpertTrace> {
         let mut experts = Vec::new();
-        for ((encoder, weights), seen) in self
-            .model
-            .encoders
+        for ((encoder, weights), seen) in self.model().encoders
             .iter()
             .zip(&self.weights.encoders)
             .zip(&observations.experts)
@@ -47,7 +51,7 @@ impl Inspector {
                 Tensor::from_slice(seen, (observations.beliefs, encoder.inputs()), &Device::Cpu)?;
             experts.push(trace(
                 &encoder.encode(&seen, weights, false)?,
-                self.model.config.latent,
+                self.model().config.latent,
             )?);
         }
         Ok(ExpertTrace {
@@ -58,7 +62,7 @@ impl Inspector {
 
     /// The beliefs for one setting of the switches.
     pub fn filter(&self, experts: &ExpertTrace, alphas: &Alphas) -> Result<BeliefTrace> {
-        let latent = self.model.config.latent;
+        let latent = self.model().config.latent;
         let beliefs = alphas.values.len() / alphas.experts;
         let shape = (1, beliefs, latent);
         let gaussians = experts
@@ -81,10 +85,10 @@ impl Inspector {
             noise: None,
         };
         let filtered = filter::filter(
-            &self.model.dynamics,
+            &self.model().dynamics,
             &self.weights.dynamics,
             inputs,
-            self.model.config.prior_expert,
+            self.model().config.prior_expert,
         )?;
         Ok(BeliefTrace {
             prior: trace(&filtered.prior, latent)?,
@@ -101,7 +105,7 @@ impl Inspector {
         from: usize,
         horizon: usize,
     ) -> Result<GaussianTrace> {
-        let config = &self.model.config;
+        let config = &self.model().config;
         let Some(known) = experts.controls.get(from..from + horizon) else {
             candle_core::bail!(
                 "a rollout of {horizon} steps from belief {from} needs controls that were not recorded"
@@ -121,7 +125,7 @@ impl Inspector {
             &Device::Cpu,
         )?;
         let rolled = filter::rollout(
-            &self.model.dynamics,
+            &self.model().dynamics,
             &self.weights.dynamics,
             &hidden,
             &z,
@@ -132,9 +136,9 @@ impl Inspector {
 
     /// What expert `index` would see for each latent, `(n, Z)` row major: `(n, outputs)` numbers.
     pub fn decode(&self, index: usize, latents: &[f32]) -> Result<Vec<f32>> {
-        let latent = self.model.config.latent;
+        let latent = self.model().config.latent;
         let latents = Tensor::from_slice(latents, (latents.len() / latent, latent), &Device::Cpu)?;
-        self.model.decoders[index]
+        self.model().decoders[index]
             .decode(&latents, &self.weights.decoders[index])?
             .flatten_all()?
             .to_vec1()
@@ -145,13 +149,13 @@ impl Inspector {
         let decoded = self.decode(0, latents)?;
         Ok(decoded
             .into_iter()
-            .step_by(self.model.config.frame_stack + 1)
+            .step_by(self.model().config.frame_stack + 1)
             .collect())
     }
 
     /// The newest frame for each latent, as grey levels.
     pub fn decode_frames(&self, latents: &[f32]) -> Result<Vec<Frame>> {
-        let side = self.model.config.frame_size;
+        let side = self.model().config.frame_size;
         let pixels = self.decode_pixels(latents)?;
         let frame = |pixels: &[f32]| Frame {
             width: side,

@@ -1,1 +1,4 @@
 //! What crosses folders, one module a theme.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod golden;
