@@ -21,7 +21,7 @@ use crate::episode::Frame;
 /// Samples a pixel, along each axis.
 const OVERSAMPLING: usize = 4;
 /// Reflectance of the table, as the grey value under full light.
-const TABLE_GREY: f64 = 158.0;
+const TABLE_GREY: f64 = 168.0;
 /// How much darker the table is in full shadow.
 const SHADOW_DEPTH: f64 = 0.52;
 
@@ -41,15 +41,15 @@ impl Studio {
     /// On a size of 0, or of more than tiny-skia can draw; [`Params::check`](super::Params::check) refuses both.
     pub fn new(scene: &Scene, frame_size: usize) -> Self {
         let canvas_px = frame_size * OVERSAMPLING;
-        let target = Vector3::new(0.615, 0.0, 0.02);
-        let (azimuth, elevation) = (-52.0_f64.to_radians(), 40.0_f64.to_radians());
+        let target = Vector3::new(0.585, 0.0, 0.02);
+        let (azimuth, elevation) = (-24.0_f64.to_radians(), 46.0_f64.to_radians());
         let direction = Vector3::new(
             elevation.cos() * azimuth.cos(),
             elevation.cos() * azimuth.sin(),
             elevation.sin(),
         );
         let camera = Camera::look_at(target + direction * 1.1, target, 0.50, canvas_px);
-        let lamp = Lamp::new(Vector3::new(0.35, -0.45, 1.1), 0.10);
+        let lamp = Lamp::new(Vector3::new(0.60, -0.55, 1.2), 0.10);
         let table = table(&camera, &lamp, canvas_px);
         Self {
             scene: scene.clone(),

@@ -34,7 +34,7 @@ impl Default for Scene {
             plate_start_m: [0.50, 0.0],
             tip_radius_m: 0.008,
             tip_friction: 0.2,
-            sensor_lever_m: 0.12,
+            sensor_lever_m: 0.15,
             workspace_m: [[0.36, -0.15], [0.72, 0.15]],
         }
     }

@@ -31,21 +31,21 @@ impl Prism {
             outline: outline.to_vec(),
             bottom_m: 0.0,
             top_m: scene.plate_height_m,
-            grey: 232.0,
+            grey: 250.0,
         }
     }
 
     /// The rod below its holder.
     pub fn rod(scene: &Scene, tip_m: Point) -> Self {
-        Self::round(tip_m, scene.tip_radius_m, ROD_BOTTOM_M, 0.125, 88.0)
+        Self::round(tip_m, scene.tip_radius_m, ROD_BOTTOM_M, 0.150, 120.0)
     }
 
     /// What holds the rod, from its lowest piece up: a light collar, the dark sensor, the dark wrist.
     pub fn holder(tip_m: Point) -> [Self; 3] {
         [
-            Self::round(tip_m, 0.016, 0.125, 0.137, 150.0),
-            Self::round(tip_m, 0.024, 0.137, 0.175, 50.0),
-            Self::round(tip_m, 0.021, 0.175, 0.36, 66.0),
+            Self::round(tip_m, 0.015, 0.150, 0.160, 165.0),
+            Self::round(tip_m, 0.022, 0.160, 0.190, 50.0),
+            Self::round(tip_m, 0.019, 0.190, 0.55, 66.0),
         ]
     }
 
