@@ -1,0 +1,108 @@
+//! One episode from a seed: the policy drives the rod, the world moves, the instruments are read, pictures taken.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use super::{
+    Params, Scene,
+    pusher::{self, Arm},
+    render::Studio,
+    sensor::{WrenchSensor, read_position, read_velocity},
+    world::World,
+};
+use crate::episode::{EpisodeMeta, Recording};
+
+/// The first episode starts on 1 January 2024, 00:00 UTC.
+const EPOCH_SECS: i64 = 1_704_067_200;
+/// Episodes start on whole seconds, at least this far apart from the end of the one before.
+const PAUSE_SECS: i64 = 1;
+
+/// Simulates episode `index` of `seed`; the same arguments give the same bits, on any thread.
+///
+/// The recording starts one full window before its first image, with the command held in that window; one command
+/// follows at each image but the last. An image shares its stamp with every `window`-th sample, so alignment takes
+/// samples unchanged. Force and torque are what the plate does to the rod, in the axes of the world.
+///
+/// # Panics
+/// On parameters that [`Params::check`] refuses.
+pub fn simulate(params: &Params, seed: u64, index: u64) -> Recording {
+    let scene = Scene::default();
+    let studio = Studio::new(&scene, params.frame_size);
+    record(params, &scene, &studio, seed, index)
+}
+
+fn record(params: &Params, scene: &Scene, studio: &Studio, seed: u64, index: u64) -> Recording {
+    // Two streams an episode: how much the instruments draw leaves the motion as it is.
+    let mut policy_rng = stream(seed, 2 * index);
+    let mut noise_rng = stream(seed, 2 * index + 1);
+    let physics_secs = params.physics_secs();
+    let mut world = World::new(scene, pusher::start_m(scene, &mut policy_rng), physics_secs);
+    let mut arm = Arm::new(scene, physics_secs);
+    let mut wrench = WrenchSensor::new(scene, physics_secs);
+    let mut velocity = [0.0; 2];
+    let mut command = [0.0; 2];
+
+    let samples = params.steps * params.window;
+    let mut recording = Recording {
+        meta: meta(params, seed, index),
+        ..Recording::default()
+    };
+    let start_nanos = recording.meta.start_nanos;
+    for sample in 0..=samples {
+        let stamp = start_nanos + params.sample_nanos(sample);
+        let [tip_x, tip_y] = world.tip_m();
+        let tip_m = [tip_x, tip_y, scene.contact_height_m()];
+        recording
+            .wrench
+            .push(stamp, wrench.read(params, &mut noise_rng));
+        recording
+            .ee_position
+            .push(stamp, read_position(params, tip_m, &mut noise_rng));
+        let [vx, vy] = velocity;
+        recording
+            .ee_velocity
+            .push(stamp, read_velocity(params, [vx, vy, 0.0], &mut noise_rng));
+        let plate_pose = world.plate_pose();
+        recording.object.push(stamp, plate_pose);
+        if sample > 0 && sample % params.window == 0 {
+            recording.frame_stamps_nanos.push(stamp);
+            recording
+                .frames
+                .push(studio.picture(plate_pose, [tip_x, tip_y]));
+        }
+        if sample == samples {
+            break;
+        }
+        if sample % params.window == 0 {
+            command = pusher::command(&mut policy_rng);
+            recording.control.push(stamp, command);
+        }
+        for _ in 0..params.substeps() {
+            velocity = arm.follow(command, world.tip_m());
+            wrench.feel(&world.step(velocity));
+        }
+    }
+    recording
+}
+
+fn stream(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    rng.set_stream(stream);
+    rng
+}
+
+fn meta(params: &Params, seed: u64, index: u64) -> EpisodeMeta {
+    let duration_secs = params.steps as f64 * params.step_secs();
+    let spacing_secs = duration_secs.ceil() as i64 + PAUSE_SECS;
+    let start_nanos = (EPOCH_SECS + index as i64 * spacing_secs) * 1_000_000_000;
+    EpisodeMeta {
+        id: format!("ep{index:05}"),
+        start_nanos,
+        end_nanos: start_nanos + params.sample_nanos(params.steps * params.window),
+        split: None,
+        object: Some("square plate".into()),
+        surface: None,
+        source: Some("poescope simulate".into()),
+        seed: Some(seed),
+    }
+}
