@@ -6,6 +6,7 @@ use rayon::prelude::*;
 
 use crate::{
     cli::SimulateArgs,
+    data::DatasetWriter,
     episode::Recording,
     sim::{self, Motion, Motions, Params},
 };
@@ -21,7 +22,9 @@ const CHUNK_PER_THREAD: usize = 8;
     reason = "the distribution of what was recorded is this command's answer"
 )]
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let motions = record_all(args, &mut |_recording| Ok(()))?;
+    let mut writer = DatasetWriter::create(&args.out)?;
+    let motions = record_all(args, &mut |recording| Ok(writer.write(recording)?))?;
+    writer.finish()?;
     println!("{motions}");
     Ok(())
 }

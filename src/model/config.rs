@@ -121,7 +121,7 @@ impl Config {
                 final_rate: 0.02,
                 clip: 0.5,
                 n_step: 2,
-                kl_weight: 1.0,
+                kl_weight: 0.5,
                 error_weights: Vec::new(),
                 masks,
             },
