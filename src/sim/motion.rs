@@ -132,9 +132,11 @@ mod tests {
             turn_rad: 0.0,
             in_contact: i > 25,
         }));
-        assert_eq!(motions.percentiles(|m| m.shift_m), [0.005, 0.050, 0.095]);
-        assert_eq!(motions.share(|m| m.in_contact), 0.75);
-        assert_eq!(motions.share(Motion::is_marked), 0.9);
-        assert_eq!(Motions::default().percentiles(|m| m.shift_m), [0.0; 3]);
+        let text = motions.to_string();
+        assert!(text.contains("contact     75.0 %"), "{text}");
+        assert!(text.contains("moved > 1 cm or > 5°      90.0 %"), "{text}");
+        assert!(text.contains("0.5 / 5.0 / 9.5 cm"), "{text}");
+        let empty = Motions::default().to_string();
+        assert!(empty.contains("0.0 / 0.0 / 0.0 cm"), "{empty}");
     }
 }

@@ -40,9 +40,7 @@ impl Push {
 
     /// Moves the rod by `velocity` for `dt` seconds; returns its force on the plate in newtons.
     fn step(&mut self, velocity: Vec2, dt: f64) -> Vec2 {
-        for axis in 0..2 {
-            self.tip[axis] += velocity[axis] * dt;
-        }
+        self.tip = advance(self.tip, velocity, dt);
         if self.gap() > 0.0 {
             return [0.0; 2];
         }
@@ -94,15 +92,11 @@ impl Push {
 
         let arm = [self.pose[0] - contact[0], self.pose[1] - contact[1]];
         let centre_velocity = foot_velocity(arm, w, rate);
-        for axis in 0..2 {
-            self.pose[axis] += centre_velocity[axis] * dt;
-        }
-        self.pose[2] += rate * dt;
+        let [x, y] = advance([self.pose[0], self.pose[1]], centre_velocity, dt);
+        self.pose = [x, y, self.pose[2] + rate * dt];
         // Takes out the drift of the integration.
-        let gap = self.gap();
-        for axis in 0..2 {
-            self.pose[axis] -= gap * normal[axis];
-        }
+        let [x, y] = advance([x, y], normal, -self.gap());
+        self.pose = [x, y, self.pose[2]];
         force
     }
 
@@ -141,6 +135,10 @@ fn minimum(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
         }
     }
     f64::midpoint(low, high)
+}
+
+fn advance(from: Vec2, velocity: Vec2, secs: f64) -> Vec2 {
+    [0, 1].map(|axis| from[axis] + velocity[axis] * secs)
 }
 
 fn dot(a: Vec2, b: Vec2) -> f64 {

@@ -167,6 +167,10 @@ mod tests {
     }
 
     #[test]
+    #[expect(
+        clippy::float_cmp,
+        reason = "a channel is the same reading or exactly 0"
+    )]
     fn a_planar_setup_senses_its_own_channels_of_the_same_push() {
         let planar = Params {
             planar: true,
