@@ -16,6 +16,8 @@ mod motion;
 mod params;
 mod polygon;
 mod pusher;
+#[cfg(test)]
+mod quasi_static;
 mod record;
 mod render;
 mod scene;

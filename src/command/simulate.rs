@@ -86,3 +86,40 @@ fn progress_bar(episodes: usize) -> ProgressBar {
         ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::episode::Split;
+
+    #[test]
+    fn episodes_come_in_order_and_alike_whatever_the_threads() {
+        let record = |threads| {
+            let args = SimulateArgs {
+                episodes: 19,
+                seed: 4,
+                out: "unused.mcap".into(),
+                split: Some(Split::Val),
+                steps: 2,
+                window: 4,
+                rate_hz: 120.0,
+                planar: false,
+                threads: Some(threads),
+                sheet: None,
+            };
+            let mut recordings = Vec::new();
+            let mut keep = |recording: &Recording| {
+                recordings.push(recording.clone());
+                Ok(())
+            };
+            record_all(&args, &mut keep).expect("nothing can fail without a file");
+            recordings
+        };
+        let recordings = record(1);
+        assert!(recordings == record(3));
+        let ids: Vec<_> = recordings.iter().map(|r| r.meta.id.as_str()).collect();
+        assert_eq!(ids.len(), 19);
+        assert_eq!((ids[0], ids[18]), ("ep00000", "ep00018"));
+        assert!(recordings.iter().all(|r| r.meta.split == Some(Split::Val)));
+    }
+}

@@ -51,3 +51,21 @@ impl Camera {
         self.eye - ray * (self.eye.z / ray.z)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_of_the_table_is_seen_where_it_projects_to() {
+        let target = Vector3::new(0.5, 0.0, 0.0);
+        let camera = Camera::look_at(Vector3::new(1.0, -0.4, 0.8), target, 0.5, 64);
+        let [column, row] = camera.project(target);
+        assert!((column - 32.0).abs() < 1e-9 && (row - 32.0).abs() < 1e-9);
+        let point = Vector3::new(0.6, 0.1, 0.0);
+        let [column, row] = camera.project(point);
+        assert!((camera.on_table(column, row) - point).norm() < 1e-9);
+        // Farther away is higher up in the image.
+        assert!(camera.project(Vector3::new(0.3, 0.1, 0.0))[1] < row);
+    }
+}

@@ -102,3 +102,41 @@ impl fmt::Display for Motions {
         )
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    #[test]
+    fn turns_add_up_beyond_half_a_turn() {
+        let mut recording = Recording::default();
+        for i in 0..=10_i64 {
+            let yaw = 0.4 * i as f64;
+            let wrapped = yaw.sin().atan2(yaw.cos());
+            recording.object.push(i, [0.01 * i as f64, 0.0, wrapped]);
+        }
+        let motion = Motion::of(&recording).expect("the recording has poses");
+        assert!((motion.turn_rad - 4.0).abs() < 1e-9 && motion.turn_rad > PI);
+        assert!((motion.shift_m - 0.1).abs() < 1e-12);
+        assert!(motion.is_marked() && !motion.in_contact);
+        assert_eq!(Motion::of(&Recording::default()), None);
+    }
+
+    #[test]
+    fn percentiles_are_nearest_ranks() {
+        let mut motions = Motions::default();
+        motions.extend((1..=100).rev().map(|i| Motion {
+            shift_m: f64::from(i) / 1000.0,
+            turn_rad: 0.0,
+            in_contact: i > 25,
+        }));
+        let text = motions.to_string();
+        assert!(text.contains("contact     75.0 %"), "{text}");
+        assert!(text.contains("moved > 1 cm or > 5°      90.0 %"), "{text}");
+        assert!(text.contains("0.5 / 5.0 / 9.5 cm"), "{text}");
+        let empty = Motions::default().to_string();
+        assert!(empty.contains("0.0 / 0.0 / 0.0 cm"), "{empty}");
+    }
+}

@@ -95,3 +95,41 @@ impl Params {
         (i as f64 * 1e9 / self.rate_hz).round() as i64
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_cannot_be_recorded_is_refused() {
+        let refuse = |change: fn(&mut Params)| {
+            let mut params = Params::default();
+            change(&mut params);
+            params.check().is_err()
+        };
+        assert_eq!(Params::default().check(), Ok(()));
+        assert!(refuse(|params| params.steps = 1));
+        assert!(refuse(|params| params.window = 0));
+        assert!(refuse(|params| params.rate_hz = f64::NAN));
+        assert!(refuse(|params| params.rate_hz = 0.0));
+        assert!(refuse(|params| params.frame_size = 0));
+        assert!(refuse(
+            |params| (params.steps, params.window) = (10_000, 10_000)
+        ));
+    }
+
+    #[test]
+    fn the_physics_is_a_multiple_of_the_sensors() {
+        let substeps = |rate_hz| {
+            let params = Params {
+                rate_hz,
+                ..Params::default()
+            };
+            params.substeps()
+        };
+        assert_eq!(
+            [substeps(120.0), substeps(180.0), substeps(2000.0)],
+            [4, 3, 1]
+        );
+    }
+}

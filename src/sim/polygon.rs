@@ -69,7 +69,7 @@ mod tests {
         let window = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
         let shifted = window.map(|[x, y]| [x + 1.0, y + 1.0]);
         let mut cut = clip(&shifted, &window);
-        cut.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        cut.sort_by(|a, b| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
         assert_eq!(cut, [[1.0, 1.0], [1.0, 2.0], [2.0, 1.0], [2.0, 2.0]]);
         let apart = window.map(|[x, y]| [x + 3.0, y]);
         assert!(clip(&apart, &window).is_empty());

@@ -106,3 +106,92 @@ fn meta(params: &Params, seed: u64, index: u64) -> EpisodeMeta {
         seed: Some(seed),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use rayon::prelude::*;
+
+    use super::*;
+    use crate::sim::{Motion, Motions};
+
+    /// The channels, rates and lengths of the MIT pushing set.
+    fn mit_params() -> Params {
+        Params {
+            steps: 48,
+            window: 10,
+            rate_hz: 180.0,
+            planar: true,
+            ..Params::default()
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_bits_on_any_thread() {
+        let params = Params::default();
+        let alone: Vec<_> = (0..4).map(|index| simulate(&params, 7, index)).collect();
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(3)
+            .build()
+            .expect("three threads start");
+        let together: Vec<_> = pool.install(|| {
+            let indices = (0..4_u64).into_par_iter();
+            indices.map(|index| simulate(&params, 7, index)).collect()
+        });
+        assert!(alone == together);
+        assert!(alone[0].wrench != alone[1].wrench);
+        assert!(simulate(&params, 8, 0).wrench != alone[0].wrench);
+    }
+
+    #[test]
+    fn streams_have_their_counts_and_share_their_stamps() {
+        for params in [Params::default(), mit_params()] {
+            let recording = simulate(&params, 1, 3);
+            let samples = params.steps * params.window + 1;
+            let stamps = &recording.wrench.stamps_nanos;
+            assert_eq!(stamps.len(), samples);
+            assert_eq!(recording.wrench.values.len(), samples);
+            assert_eq!(&recording.ee_position.stamps_nanos, stamps);
+            assert_eq!(&recording.ee_velocity.stamps_nanos, stamps);
+            assert_eq!(&recording.object.stamps_nanos, stamps);
+            assert!(stamps.windows(2).all(|pair| pair[0] < pair[1]));
+
+            let every_window: Vec<_> = stamps.iter().copied().step_by(params.window).collect();
+            assert_eq!(recording.frame_stamps_nanos, every_window[1..]);
+            assert_eq!(recording.control.stamps_nanos, every_window[..params.steps]);
+            assert_eq!(recording.frames.len(), params.steps);
+            assert_eq!(recording.meta.start_nanos, stamps[0]);
+            assert_eq!(recording.meta.end_nanos, stamps[samples - 1]);
+            let next = simulate(&params, 1, 4);
+            assert!(recording.meta.end_nanos < next.meta.start_nanos);
+        }
+    }
+
+    #[test]
+    #[expect(
+        clippy::float_cmp,
+        reason = "a channel is the same reading or exactly 0"
+    )]
+    fn a_planar_setup_senses_its_own_channels_of_the_same_push() {
+        let planar = Params {
+            planar: true,
+            ..Params::default()
+        };
+        let (full, flat) = (simulate(&Params::default(), 2, 0), simulate(&planar, 2, 0));
+        assert_eq!(full.object, flat.object);
+        for (full, flat) in full.wrench.values.iter().zip(&flat.wrench.values) {
+            assert_eq!(*flat, [full[0], full[1], 0.0, 0.0, 0.0, full[5]]);
+        }
+        for (full, flat) in full.ee_position.values.iter().zip(&flat.ee_position.values) {
+            assert_eq!(*flat, [full[0], full[1], 0.0]);
+        }
+    }
+
+    #[test]
+    fn most_episodes_move_the_plate() {
+        for params in [Params::default(), mit_params()] {
+            let mut motions = Motions::default();
+            motions.extend((0..40).filter_map(|index| Motion::of(&simulate(&params, 0, index))));
+            assert!(motions.share(Motion::is_marked) >= 0.8, "{motions}");
+        }
+    }
+}

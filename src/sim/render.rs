@@ -254,3 +254,54 @@ fn fill_path(canvas: &mut Pixmap, path: PathBuilder, paint: &Paint) {
         canvas.fill_path(&path, paint, FillRule::Winding, Transform::identity(), None);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FAR_TIP: Point = [0.36, 0.0];
+
+    #[test]
+    fn the_plate_at_its_start_is_large_and_bright() {
+        let studio = Studio::new(&Scene::default(), 64);
+        let frame = studio.picture([0.5, 0.0, 0.0], FAR_TIP);
+        let bright = frame.pixels.iter().filter(|grey| **grey > 190).count();
+        assert!((150..500).contains(&bright), "{bright} bright pixels");
+    }
+
+    #[test]
+    fn a_plate_hides_the_rod_behind_it_and_not_the_rod_before_it() {
+        let scene = Scene::default();
+        let studio = Studio::new(&scene, 64);
+        let plate = Prism::plate(&scene, [0.6, 0.0, 0.0]);
+        assert!(!studio.is_in_front(&plate, [0.52, 0.0]));
+        assert!(studio.is_in_front(&plate, [0.68, 0.0]));
+    }
+
+    #[test]
+    fn what_does_not_move_looks_the_same_in_every_picture() {
+        let studio = Studio::new(&Scene::default(), 64);
+        let near = studio.picture([0.5, 0.0, 0.0], FAR_TIP);
+        let far = studio.picture([0.6, 0.05, 0.7], [0.40, 0.02]);
+        // The lower left of the table, where neither plate nor shadow come.
+        let corner = 60 * 64;
+        assert_eq!(
+            near.pixels[corner..corner + 8],
+            far.pixels[corner..corner + 8]
+        );
+    }
+
+    #[test]
+    fn turning_the_plate_by_a_quarter_shows() {
+        let studio = Studio::new(&Scene::default(), 64);
+        let straight = studio.picture([0.5, 0.0, 0.0], FAR_TIP);
+        let turned = studio.picture([0.5, 0.0, std::f64::consts::FRAC_PI_2], FAR_TIP);
+        let most = straight
+            .pixels
+            .iter()
+            .zip(&turned.pixels)
+            .map(|(a, b)| a.abs_diff(*b))
+            .max();
+        assert!(most > Some(40));
+    }
+}

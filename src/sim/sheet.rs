@@ -37,3 +37,31 @@ pub fn sheet(recordings: &[Recording]) -> GrayImage {
     }
     sheet
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::episode::Frame;
+
+    #[test]
+    fn frames_lie_in_rows_with_white_gaps() {
+        let episode = |greys: &[u8]| Recording {
+            frames: greys
+                .iter()
+                .map(|grey| Frame {
+                    width: 3,
+                    height: 2,
+                    pixels: vec![*grey; 6],
+                })
+                .collect(),
+            ..Recording::default()
+        };
+        let sheet = sheet(&[episode(&[10, 20]), episode(&[30])]);
+        assert_eq!(sheet.dimensions(), (18, 14));
+        assert_eq!(sheet.get_pixel(2, 2).0, [10]);
+        assert_eq!(sheet.get_pixel(15, 5).0, [20]);
+        assert_eq!(sheet.get_pixel(2, 8).0, [30]);
+        assert_eq!(sheet.get_pixel(8, 2).0, [255]);
+        assert_eq!(sheet.get_pixel(12, 9).0, [255]);
+    }
+}

@@ -4,8 +4,10 @@
 //! - Coulomb friction at each contact; the default couples neither points nor directions, and a plate pushed beside
 //!   its centre does not turn.
 //! - No contact recycling, which keeps contacts that are stale by centimetres.
-//! - The plate stands on four balls rather than its underside, whose corner contacts the solver gives the wrong
-//!   friction direction. Groups let the rod see only the plate's box and the table only the balls.
+//! - The plate stands on four balls rather than its underside. The solver limits a contact's friction after weighing
+//!   it by the mass felt there, which is less across the radius than along it, so the friction of a foot leads off
+//!   its sliding direction; by 30° at the corners, by up to 17° at the feet. Groups let the rod see only the plate's
+//!   box and the table only the balls.
 //! - The rod's end is a ball at half the plate's height (the sides are upright, so the same contact as the rod's)
 //!   with the two horizontal axes locked and driven, and the vertical one on a soft spring. A rod rigid in z would
 //!   carry part of the plate's weight by friction, as much as the solver's rounding happens to load on it.
