@@ -8,6 +8,7 @@
 //! ```
 
 mod align;
+mod block_cache;
 mod cdr;
 mod chunk;
 mod collect;

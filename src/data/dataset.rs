@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::align::align_on;
+use super::block_cache::BlockCache;
 use super::collect::Stream;
 use super::error::DataError;
 use super::hash::Fnv;
@@ -26,6 +27,7 @@ pub struct Dataset {
     metas: Vec<EpisodeMeta>,
     /// Files that are no recordings.
     left_out: Vec<LeftOut>,
+    cache: BlockCache,
 }
 
 impl Dataset {
@@ -68,9 +70,10 @@ impl Dataset {
             homes: Vec::new(),
             metas: Vec::new(),
             left_out: Vec::new(),
+            cache: BlockCache::default(),
         };
         for path in paths {
-            match McapFile::open(&path, &dataset.topics) {
+            match McapFile::open(&path, &dataset.topics, dataset.files.len()) {
                 Ok(file) => dataset.add(file),
                 Err(error) if !is_folder => return Err(error),
                 Err(error) => dataset.left_out.push(LeftOut {
@@ -147,7 +150,7 @@ impl Dataset {
     /// Damage in a chunk it touches, a message that does not decode, an index out of range.
     pub fn recording(&self, index: usize) -> Result<Recording, DataError> {
         let (file, meta) = self.episode(index)?;
-        file.recording(meta)
+        file.recording(meta, &self.cache)
     }
 
     /// Reads episode `index` and lays it out on its steps.
@@ -156,7 +159,7 @@ impl Dataset {
     /// Those of [`Dataset::recording`], and fewer than two images.
     pub fn episode_aligned(&self, index: usize, layout: Layout) -> Result<Episode, DataError> {
         let (file, meta) = self.episode(index)?;
-        let recording = file.recording(meta)?;
+        let recording = file.recording(meta, &self.cache)?;
         align_on(&recording, layout, &self.topics).map_err(|error| match error {
             DataError::TooFewImages { place, images } => DataError::TooFewImages {
                 place: format!("{}: {place}", file.path.display()),

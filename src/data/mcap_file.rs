@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 use mcap::MAGIC;
 use mcap::records::{Record, op};
 
-use super::chunk::{for_each_record, parse};
+use super::block_cache::BlockCache;
+use super::chunk::{parse, unpack};
 use super::collect::{Collector, Stream};
 use super::error::DataError;
 use super::index::{Index, Span};
 use super::message_type::MessageType;
-use super::record::LENGTH_LIMIT;
+use super::record::{LENGTH_LIMIT, Records, split_message};
 use super::report::LeftOut;
 use super::topics::{Role, Topics};
 use super::{scan, schema, summary};
@@ -22,6 +23,8 @@ use crate::episode::{EpisodeMeta, Recording};
 /// A file whose messages are read by seeking, one episode at a time.
 #[derive(Debug)]
 pub(super) struct McapFile {
+    /// Its number in the dataset, for the cache.
+    number: usize,
     pub(super) path: PathBuf,
     pub(super) index: Index,
     /// The channels that can be read.
@@ -31,7 +34,7 @@ pub(super) struct McapFile {
 
 impl McapFile {
     /// Opens a file: by its summary, or by a scan where it has none that can be used.
-    pub(super) fn open(path: &Path, topics: &Topics) -> Result<Self, DataError> {
+    pub(super) fn open(path: &Path, topics: &Topics, number: usize) -> Result<Self, DataError> {
         let mut file = File::open(path).map_err(DataError::io(path))?;
         let length = file.metadata().map_err(DataError::io(path))?.len();
         let mut start = Vec::new();
@@ -50,6 +53,7 @@ impl McapFile {
             Err(why) => scan::read(&mut file, length, &why).map_err(DataError::io(path))?,
         };
         let mut opened = Self {
+            number,
             path: path.to_owned(),
             index,
             streams: BTreeMap::new(),
@@ -184,30 +188,25 @@ impl McapFile {
     }
 
     /// Reads one episode's messages, from the spans that it touches.
-    pub(super) fn recording(&self, meta: &EpisodeMeta) -> Result<Recording, DataError> {
+    pub(super) fn recording(
+        &self,
+        meta: &EpisodeMeta,
+        cache: &BlockCache,
+    ) -> Result<Recording, DataError> {
         let mut file = File::open(&self.path).map_err(DataError::io(&self.path))?;
         let (start, end) = log_range(meta);
         let mut collector = Collector::default();
-        let mut bytes = Vec::new();
         for span in self.spans_of(meta) {
-            self.read_span(&mut file, span, &mut bytes)?;
-            self.each_message(span, &bytes, |id, stream, log, payload| {
+            let block = cache.get((self.number, span.offset), || {
+                self.read_span(&mut file, span)
+            })?;
+            self.each_message(span, &block, |id, stream, log, payload| {
                 if !(start..=end).contains(&log) {
                     return Ok(());
                 }
                 collector
                     .push(stream, log, payload)
-                    .map_err(|what| DataError::Message {
-                        path: self.path.clone(),
-                        topic: self
-                            .index
-                            .channels
-                            .get(&id)
-                            .map_or_else(String::new, |c| c.topic.clone()),
-                        log_time_nanos: log,
-                        offset: span.offset,
-                        what,
-                    })
+                    .map_err(|what| self.bad_message(span, id, log, what))
             })?;
         }
         Ok(collector.finish(meta.clone()))
@@ -218,12 +217,11 @@ impl McapFile {
     pub(super) fn count_images(&self, metas: &[EpisodeMeta]) -> Result<Vec<u64>, DataError> {
         let mut file = File::open(&self.path).map_err(DataError::io(&self.path))?;
         let mut counts = vec![0; metas.len()];
-        let mut bytes = Vec::new();
         for span in &self.index.spans {
             let mut seen = Vec::new();
             if span.message_indexes.is_empty() {
-                self.read_span(&mut file, span, &mut bytes)?;
-                self.each_message(span, &bytes, |_, stream, log, _| {
+                let block = self.read_span(&mut file, span)?;
+                self.each_message(span, &block, |_, stream, log, _| {
                     if stream.role == Role::Vision {
                         seen.push(log);
                     }
@@ -262,53 +260,50 @@ impl McapFile {
         Ok(())
     }
 
-    fn read_span(
-        &self,
-        file: &mut File,
-        span: &Span,
-        bytes: &mut Vec<u8>,
-    ) -> Result<(), DataError> {
-        let fits = span
-            .offset
-            .checked_add(span.length)
-            .is_some_and(|end| end <= self.index.bytes);
+    /// The records of a span.
+    fn read_span(&self, file: &mut File, span: &Span) -> Result<Vec<u8>, DataError> {
+        let end = span.offset.checked_add(span.length);
+        let fits = end.is_some_and(|end| end <= self.index.bytes);
         if !fits || span.length > LENGTH_LIMIT as u64 * 2 {
-            let what = format!("a chunk of {} bytes", span.length);
-            return Err(self.damaged(span.offset, what));
+            return Err(self.damaged(span.offset, format!("a chunk of {} bytes", span.length)));
         }
-        bytes.resize(span.length as usize, 0);
+        let mut bytes = vec![0; span.length as usize];
         file.seek(SeekFrom::Start(span.offset))
-            .and_then(|_| file.read_exact(bytes))
-            .map_err(DataError::io(&self.path))
+            .and_then(|_| file.read_exact(&mut bytes))
+            .map_err(DataError::io(&self.path))?;
+        unpack(&bytes).map_err(|what| self.damaged(span.offset, what))
     }
 
-    /// Calls `each` with the messages of readable channels in a span: channel, stream, log time, payload.
+    /// Calls `each` with the messages of readable channels in a block: channel, stream, log time, payload.
     fn each_message(
         &self,
         span: &Span,
-        bytes: &[u8],
+        block: &[u8],
         mut each: impl FnMut(u16, Stream, u64, &[u8]) -> Result<(), DataError>,
     ) -> Result<(), DataError> {
-        let mut stopped = None;
-        let read = for_each_record(bytes, |opcode, body| {
+        for record in Records::new(block) {
+            let (opcode, body) = record.map_err(|what| self.damaged(span.offset, what))?;
             if opcode != op::MESSAGE {
-                return Ok(());
+                continue;
             }
-            let Record::Message { header, data } = parse(opcode, body)? else {
-                return Ok(());
+            let Some((id, log_time, payload)) = split_message(body) else {
+                return Err(self.damaged(span.offset, "a message without a head".to_owned()));
             };
-            let Some(&stream) = self.streams.get(&header.channel_id) else {
-                return Ok(());
-            };
-            each(header.channel_id, stream, header.log_time, &data).map_err(|error| {
-                stopped = Some(error);
-                String::new()
-            })
-        });
-        match (stopped, read) {
-            (Some(error), _) => Err(error),
-            (None, Err(what)) => Err(self.damaged(span.offset, what)),
-            (None, Ok(())) => Ok(()),
+            if let Some(&stream) = self.streams.get(&id) {
+                each(id, stream, log_time, payload)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn bad_message(&self, span: &Span, id: u16, log_time_nanos: u64, what: String) -> DataError {
+        let channel = self.index.channels.get(&id);
+        DataError::Message {
+            path: self.path.clone(),
+            topic: channel.map_or_else(String::new, |channel| channel.topic.clone()),
+            log_time_nanos,
+            offset: span.offset,
+            what,
         }
     }
 

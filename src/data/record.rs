@@ -12,6 +12,27 @@ pub(super) fn split_head(head: [u8; HEAD]) -> (u8, u64) {
     (opcode, u64::from_le_bytes(length))
 }
 
+/// Appends a record.
+pub(super) fn put_record(bytes: &mut Vec<u8>, opcode: u8, body: &[u8]) {
+    bytes.push(opcode);
+    bytes.extend_from_slice(&(body.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(body);
+}
+
+/// The head of a message: channel, log time, payload. Read here by hand, since a chunk holds tens of thousands and
+/// most are of other episodes.
+pub(super) fn split_message(body: &[u8]) -> Option<(u16, u64, &[u8])> {
+    let (channel, rest) = body.split_first_chunk::<2>()?;
+    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
+    let (log_time, rest) = rest.split_first_chunk::<8>()?;
+    let (_publish_time, payload) = rest.split_first_chunk::<8>()?;
+    Some((
+        u16::from_le_bytes(*channel),
+        u64::from_le_bytes(*log_time),
+        payload,
+    ))
+}
+
 /// Walks the records of a block of bytes: opcode, body.
 pub(super) struct Records<'a> {
     rest: &'a [u8],

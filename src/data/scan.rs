@@ -6,11 +6,11 @@ use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 use mcap::MAGIC;
-use mcap::records::{MessageHeader, Record, op};
+use mcap::records::{Record, op};
 
-use super::chunk::{for_each_record, parse};
+use super::chunk::{parse, unpack};
 use super::index::{Index, Span};
-use super::record::{HEAD, LENGTH_LIMIT, split_head};
+use super::record::{HEAD, LENGTH_LIMIT, Records, split_head, split_message};
 
 /// A run of plain messages is cut here, so that reading an episode does not read the whole file.
 const RUN_LENGTH: u64 = 1 << 20;
@@ -96,14 +96,7 @@ impl Scan<'_> {
         }
         let mut seen = Seen::default();
         let index = &mut *self.index;
-        let read = for_each_record(bytes, |opcode, body| {
-            match parse(opcode, body)? {
-                Record::Message { header, .. } => seen.message(&header),
-                described => index.describe(described),
-            }
-            Ok(())
-        });
-        if let Err(what) = read {
+        if let Err(what) = unpack(bytes).and_then(|block| seen.block(&block, index)) {
             index
                 .notes
                 .push(format!("damaged at byte {offset}: {what}"));
@@ -174,9 +167,19 @@ struct Seen {
 }
 
 impl Seen {
-    fn message(&mut self, header: &MessageHeader) {
-        *self.counts.entry(header.channel_id).or_default() += 1;
-        widen(&mut self.log_times, (header.log_time, header.log_time));
+    /// Counts a block's messages, and takes in what describes the file.
+    fn block(&mut self, block: &[u8], index: &mut Index) -> Result<(), String> {
+        for record in Records::new(block) {
+            let (opcode, body) = record?;
+            if opcode != op::MESSAGE {
+                index.describe(parse(opcode, body)?);
+                continue;
+            }
+            let (channel, log_time, _) = split_message(body).ok_or("a message without a head")?;
+            *self.counts.entry(channel).or_default() += 1;
+            widen(&mut self.log_times, (log_time, log_time));
+        }
+        Ok(())
     }
 }
 
