@@ -1,1 +1,36 @@
-//! stub
+//! Datasets: ROS 2 MCAP files in and out, and their streams laid out on steps and windows.
+//!
+//! [`Dataset`] opens files and reads episodes, [`DatasetWriter`] makes them, [`align`] puts a recording on the clock
+//! of its images. What a network wants of an episode (tensors, scaling) is the model's business, not this folder's.
+//!
+//! ```text
+//! file ─► index (summary, or scan) ─► spans of an episode ─► messages ─► cdr, image ─► Recording ─► align ─► Episode
+//! ```
+
+mod align;
+mod block_cache;
+mod cdr;
+mod chunk;
+mod collect;
+mod dataset;
+mod error;
+mod hash;
+mod image;
+mod index;
+mod mcap_file;
+mod message_type;
+mod record;
+mod report;
+mod scan;
+mod schema;
+mod split;
+mod summary;
+mod topics;
+mod write;
+
+pub use align::align;
+pub use dataset::Dataset;
+pub use error::DataError;
+pub use report::{FileReport, LeftOut, TopicReport};
+pub use topics::{Role, Topics};
+pub use write::DatasetWriter;

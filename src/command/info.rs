@@ -1,6 +1,83 @@
-//! stub
+//! `poescope info`: what a dataset holds, and what of it cannot be used.
+
+mod table;
+
+use std::io::{self, ErrorKind, Write};
+
+use anyhow::Context;
+use serde::Serialize;
+
 use crate::cli::InfoArgs;
-/// Runs it.
-pub fn run(_args: &InfoArgs) -> anyhow::Result<()> {
-    anyhow::bail!("not yet")
+use crate::data::{Dataset, FileReport, LeftOut};
+use crate::episode::{EpisodeMeta, EpisodeSource};
+
+/// Everything that is told of a dataset.
+#[derive(Debug, Serialize)]
+struct Info {
+    dataset: String,
+    data_hash: String,
+    duration_secs: f64,
+    episodes: Vec<EpisodeInfo>,
+    files: Vec<FileReport>,
+    left_out: Vec<LeftOut>,
+}
+
+/// One episode.
+#[derive(Debug, Serialize)]
+struct EpisodeInfo {
+    #[serde(flatten)]
+    meta: EpisodeMeta,
+    duration_secs: f64,
+    /// None where the file is damaged.
+    images: Option<u64>,
+}
+
+/// Prints a dataset's table of contents.
+pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
+    let info = gather(args)?;
+    let text = if args.json {
+        let mut text = serde_json::to_string_pretty(&info).context("writing JSON")?;
+        text.push('\n');
+        text
+    } else {
+        table::render(&info)
+    };
+    match io::stdout().lock().write_all(text.as_bytes()) {
+        // Whoever reads has seen enough (`| head`).
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => other.context("writing to standard output"),
+    }
+}
+
+fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
+    let dataset = Dataset::inspect(&args.path)?;
+    let counts = dataset.image_counts();
+    let episodes: Vec<_> = dataset
+        .metas()
+        .iter()
+        .zip(counts)
+        .map(|(meta, images)| EpisodeInfo {
+            duration_secs: meta.end_nanos.saturating_sub(meta.start_nanos) as f64 * 1e-9,
+            images,
+            meta: meta.clone(),
+        })
+        .collect();
+    let mut left_out = dataset.left_out().to_vec();
+    left_out.extend(episodes.iter().filter_map(|episode| {
+        let why = match episode.images {
+            Some(images) if images >= 2 => return None,
+            Some(images) => format!("{images} image(s), and an episode needs two"),
+            None => "its file is damaged, so its images could not be counted".to_owned(),
+        };
+        let what = format!("episode {}", episode.meta.id);
+        Some(LeftOut { what, why })
+    }));
+    Ok(Info {
+        dataset: dataset.name().to_owned(),
+        data_hash: dataset.data_hash().to_owned(),
+        duration_secs: episodes.iter().map(|episode| episode.duration_secs).sum(),
+        episodes,
+        files: dataset.files(),
+        left_out,
+    })
 }

@@ -1,0 +1,58 @@
+//! Gaps, and stamps that run backwards.
+
+use crate::episode::Flag;
+
+/// A gap is longer than so many nominal periods.
+const GAP_PERIODS: i64 = 3;
+/// Rounding of stamps, in nanoseconds, is no gap.
+const ROUNDING_NANOS: i64 = 1000;
+
+/// Appends what is odd about `stamps` (in the order of recording) to `flags`. The nominal period is the median one; a
+/// stream that ends so long before `until` has a gap there, too.
+pub(super) fn find(topic: &str, stamps: &[i64], until: Option<i64>, flags: &mut Vec<Flag>) {
+    let mut flag = |stamp_nanos: i64, what: String| {
+        flags.push(Flag {
+            topic: topic.to_owned(),
+            stamp_nanos,
+            what,
+        });
+    };
+    for pair in stamps.windows(2) {
+        let back = pair[0].saturating_sub(pair[1]);
+        if back > 0 {
+            flag(
+                pair[1],
+                format!("stamps run backwards by {}", duration(back)),
+            );
+        }
+    }
+    let mut sorted = stamps.to_vec();
+    sorted.sort_unstable();
+    let periods = |pair: &[i64]| pair[1].saturating_sub(pair[0]);
+    let mut lengths: Vec<_> = sorted.windows(2).map(periods).collect();
+    lengths.sort_unstable();
+    let Some(&nominal) = lengths.get(lengths.len().saturating_sub(1) / 2) else {
+        return;
+    };
+    if let Some(until) = until.filter(|&until| sorted.last().is_some_and(|&last| until > last)) {
+        sorted.push(until);
+    }
+    let limit = nominal
+        .saturating_mul(GAP_PERIODS)
+        .saturating_add(ROUNDING_NANOS);
+    for pair in sorted.windows(2) {
+        let length = periods(pair);
+        if length > limit {
+            flag(pair[0], format!("gap of {}", duration(length)));
+        }
+    }
+}
+
+fn duration(nanos: i64) -> String {
+    let secs = nanos as f64 * 1e-9;
+    if secs >= 1.0 {
+        format!("{secs:.1} s")
+    } else {
+        format!("{:.3} ms", secs * 1e3)
+    }
+}

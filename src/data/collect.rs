@@ -1,0 +1,127 @@
+//! Gathers an episode's decoded messages into a [`Recording`].
+
+use super::cdr::{
+    CompressedImage, Image, Pose, Quaternion, Stamped, Twist, Vector3, Wrench, decode,
+};
+use super::image::{grey, grey_from_compressed};
+use super::message_type::MessageType;
+use super::topics::Role;
+use crate::episode::{EpisodeMeta, Frame, Recording, Track};
+
+/// What a channel's messages are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stream {
+    pub(super) role: Role,
+    pub(super) ty: MessageType,
+}
+
+/// Log time, stamp, value.
+type Row<T> = (u64, i64, T);
+
+/// The messages so far, in file order.
+#[derive(Default)]
+pub(super) struct Collector {
+    frames: Vec<Row<Frame>>,
+    wrench: Vec<Row<[f64; 6]>>,
+    ee_position: Vec<Row<[f64; 3]>>,
+    ee_velocity: Vec<Row<[f64; 3]>>,
+    control: Vec<Row<[f64; 2]>>,
+    object: Vec<Row<[f64; 3]>>,
+}
+
+impl Collector {
+    /// Decodes one message.
+    ///
+    /// # Errors
+    /// A phrase that says what does not fit.
+    pub(super) fn push(&mut self, stream: Stream, log: u64, payload: &[u8]) -> Result<(), String> {
+        match stream.ty {
+            MessageType::Image => {
+                let image: Image<'_> = decode(payload)?;
+                let frame = grey(&image)?;
+                self.frames.push((log, image.header.stamp_or(log), frame));
+            }
+            MessageType::CompressedImage => {
+                let image: CompressedImage<'_> = decode(payload)?;
+                let frame = grey_from_compressed(image.data)?;
+                self.frames.push((log, image.header.stamp_or(log), frame));
+            }
+            MessageType::Wrench => {
+                let Stamped { header, value } = decode::<Stamped<'_, Wrench>>(payload)?;
+                let [fx, fy, fz] = value.force.xyz();
+                let [tx, ty, tz] = value.torque.xyz();
+                let stamp = header.stamp_or(log);
+                self.wrench.push((log, stamp, [fx, fy, fz, tx, ty, tz]));
+            }
+            MessageType::Pose => {
+                let Stamped { header, value } = decode::<Stamped<'_, Pose>>(payload)?;
+                self.pose(
+                    stream.role,
+                    log,
+                    header.stamp_or(log),
+                    value.position,
+                    value.orientation,
+                );
+            }
+            MessageType::Twist => {
+                let Stamped { header, value } = decode::<Stamped<'_, Twist>>(payload)?;
+                let stamp = header.stamp_or(log);
+                if stream.role == Role::Control {
+                    self.control.push((log, stamp, planar(value.linear)));
+                } else {
+                    self.ee_velocity.push((log, stamp, value.linear.xyz()));
+                }
+            }
+            MessageType::Point => {
+                let Stamped { header, value } = decode::<Stamped<'_, Vector3>>(payload)?;
+                self.control
+                    .push((log, header.stamp_or(log), planar(value)));
+            }
+        }
+        Ok(())
+    }
+
+    fn pose(&mut self, role: Role, log: u64, stamp: i64, at: Vector3, turned: Quaternion) {
+        if role == Role::Object {
+            self.object.push((log, stamp, [at.x, at.y, turned.yaw()]));
+        } else {
+            self.ee_position.push((log, stamp, at.xyz()));
+        }
+    }
+
+    /// The recording, each stream in log-time order (file order where that is equal).
+    pub(super) fn finish(self, meta: EpisodeMeta) -> Recording {
+        let frames = in_log_order(self.frames);
+        Recording {
+            meta,
+            frame_stamps_nanos: frames.iter().map(|&(_, stamp, _)| stamp).collect(),
+            frames: frames.into_iter().map(|(_, _, frame)| frame).collect(),
+            wrench: track(self.wrench),
+            ee_position: track(self.ee_position),
+            ee_velocity: track(self.ee_velocity),
+            control: track(self.control),
+            object: track(self.object),
+            flags: Vec::new(),
+        }
+    }
+}
+
+fn planar(vector: Vector3) -> [f64; 2] {
+    [vector.x, vector.y]
+}
+
+fn in_log_order<T>(mut rows: Vec<Row<T>>) -> Vec<Row<T>> {
+    rows.sort_by_key(|&(log, ..)| log);
+    rows
+}
+
+fn track<const N: usize>(rows: Vec<Row<[f64; N]>>) -> Track<N> {
+    let (stamps_nanos, values) = in_log_order(rows)
+        .into_iter()
+        .map(|(_, stamp, value)| (stamp, value))
+        .unzip();
+    Track {
+        stamps_nanos,
+        values,
+    }
+}

@@ -1,0 +1,311 @@
+//! A dataset: one file or a folder of them, opened by their summaries, read one episode at a time.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::align::align_on;
+use super::block_cache::BlockCache;
+use super::collect::Stream;
+use super::error::DataError;
+use super::hash::Fnv;
+use super::mcap_file::McapFile;
+use super::report::{FileReport, LeftOut, TopicReport};
+use super::split::splits;
+use super::topics::Topics;
+use crate::episode::{Episode, EpisodeMeta, EpisodeSource, Layout, Recording, SourceError, Split};
+
+/// Recordings on disk.
+#[derive(Debug)]
+pub struct Dataset {
+    path: PathBuf,
+    name: String,
+    hash: String,
+    topics: Topics,
+    files: Vec<McapFile>,
+    /// Which file each episode is in.
+    homes: Vec<usize>,
+    metas: Vec<EpisodeMeta>,
+    /// Files that are no recordings.
+    left_out: Vec<LeftOut>,
+    cache: BlockCache,
+}
+
+impl Dataset {
+    /// Opens an `.mcap` file, or every one in a folder in the order of their names. Reads their summaries and metadata
+    /// only, unless a file lacks them: that one is read through once, with a note. A `dataset.toml` beside the files
+    /// maps roles to topics. An episode that turns out to have fewer than two images fails when it is read.
+    ///
+    /// # Errors
+    /// If the path cannot be read, is no MCAP, or holds no episode at all. In a folder, what cannot be opened is
+    /// reported by [`Dataset::left_out`] as long as one file can.
+    pub fn open(path: &Path) -> Result<Self, DataError> {
+        let dataset = Self::inspect(path)?;
+        if dataset.metas.is_empty() {
+            return Err(dataset.why_empty());
+        }
+        Ok(dataset)
+    }
+
+    /// Like [`Dataset::open`], for looking at what is there: no episode at all is no error.
+    ///
+    /// # Errors
+    /// If the path cannot be read or is no MCAP.
+    pub fn inspect(path: &Path) -> Result<Self, DataError> {
+        let is_folder = fs::metadata(path).map_err(DataError::io(path))?.is_dir();
+        let (folder, paths) = if is_folder {
+            (path, mcap_files(path)?)
+        } else {
+            (path.parent().unwrap_or(path), vec![path.to_owned()])
+        };
+        let mut dataset = Self {
+            path: path.to_owned(),
+            name: path
+                .file_name()
+                .unwrap_or(path.as_os_str())
+                .to_string_lossy()
+                .into_owned(),
+            hash: String::new(),
+            topics: Topics::beside(folder)?,
+            files: Vec::new(),
+            homes: Vec::new(),
+            metas: Vec::new(),
+            left_out: Vec::new(),
+            cache: BlockCache::default(),
+        };
+        for path in paths {
+            match McapFile::open(&path, &dataset.topics, dataset.files.len()) {
+                Ok(file) => dataset.add(file),
+                Err(error) if !is_folder => return Err(error),
+                Err(error) => dataset.left_out.push(LeftOut {
+                    what: path.display().to_string(),
+                    why: error.to_string(),
+                }),
+            }
+        }
+        dataset.hash = match dataset.files.as_slice() {
+            [file] => file.index.hash.clone(),
+            files => {
+                let mut hash = Fnv::new();
+                files
+                    .iter()
+                    .for_each(|file| hash.update(file.index.hash.as_bytes()));
+                hash.hex()
+            }
+        };
+        Ok(dataset)
+    }
+
+    fn add(&mut self, mut file: McapFile) {
+        let mut metas = file.episodes();
+        if file.images() < 2 {
+            let why = format!(
+                "{} image(s) on {}, and an episode needs two; map the camera's topic in dataset.toml",
+                file.images(),
+                self.topics.vision
+            );
+            let what = file.path.display().to_string();
+            file.left_out.push(LeftOut { what, why });
+            metas.clear();
+        }
+        metas.retain(|meta| {
+            let blind = file.is_blind(meta);
+            if blind {
+                file.left_out.push(LeftOut {
+                    what: format!("episode {}", meta.id),
+                    why: "no image, and an episode needs two".to_owned(),
+                });
+            }
+            !blind
+        });
+        self.homes
+            .resize(self.homes.len() + metas.len(), self.files.len());
+        self.metas.extend(metas);
+        self.files.push(file);
+    }
+
+    fn why_empty(&self) -> DataError {
+        let mut reasons: Vec<_> = self
+            .files
+            .iter()
+            .flat_map(|file| file.index.notes.iter().cloned())
+            .collect();
+        let left_out = self.files.iter().flat_map(|file| &file.left_out);
+        reasons.extend(
+            left_out
+                .chain(&self.left_out)
+                .map(|left| format!("{} {}", left.what, left.why)),
+        );
+        if reasons.is_empty() {
+            reasons.push("no messages".to_owned());
+        }
+        DataError::NoEpisode {
+            path: self.path.clone(),
+            why: reasons.join("; "),
+        }
+    }
+
+    /// Reads episode `index` as it was sensed, each stream on its own clock.
+    ///
+    /// # Errors
+    /// Damage in a chunk it touches, a message that does not decode, an index out of range.
+    pub fn recording(&self, index: usize) -> Result<Recording, DataError> {
+        let (file, meta) = self.episode(index)?;
+        file.recording(meta, &self.cache)
+    }
+
+    /// Reads episode `index` and lays it out on its steps.
+    ///
+    /// # Errors
+    /// Those of [`Dataset::recording`], and fewer than two images.
+    pub fn episode_aligned(&self, index: usize, layout: Layout) -> Result<Episode, DataError> {
+        let (file, meta) = self.episode(index)?;
+        let recording = file.recording(meta, &self.cache)?;
+        align_on(&recording, layout, &self.topics).map_err(|error| match error {
+            DataError::TooFewImages { place, images } => DataError::TooFewImages {
+                place: format!("{}: {place}", file.path.display()),
+                images,
+            },
+            other => other,
+        })
+    }
+
+    fn episode(&self, index: usize) -> Result<(&McapFile, &EpisodeMeta), DataError> {
+        let home = self.homes.get(index).and_then(|&home| self.files.get(home));
+        home.zip(self.metas.get(index))
+            .ok_or_else(|| DataError::OutOfRange {
+                path: self.path.clone(),
+                index,
+                count: self.metas.len(),
+            })
+    }
+
+    /// The split of each episode. What names none is `train`; where none is of `val`, a tenth of `train` is, by `seed`.
+    pub fn splits(&self, seed: u64) -> Vec<Split> {
+        splits(&self.metas, seed)
+    }
+
+    /// The split of one episode, as [`Dataset::splits`] says; none if there is no such episode.
+    pub fn split_of(&self, index: usize, seed: u64) -> Option<Split> {
+        self.splits(seed).get(index).copied()
+    }
+
+    /// The topic of each role.
+    pub fn topics(&self) -> &Topics {
+        &self.topics
+    }
+
+    /// Files of a folder that could not be opened, and why.
+    pub fn left_out(&self) -> &[LeftOut] {
+        &self.left_out
+    }
+
+    /// What is known of each file.
+    pub fn files(&self) -> Vec<FileReport> {
+        (0..self.files.len())
+            .map(|home| self.file_report(home))
+            .collect()
+    }
+
+    /// How many images each episode has, by the files' message indexes; a file without them is read through. None
+    /// where the file is damaged.
+    pub fn image_counts(&self) -> Vec<Option<u64>> {
+        let mut counts = Vec::with_capacity(self.metas.len());
+        for (home, file) in self.files.iter().enumerate() {
+            let metas = self.metas_of(home);
+            match file.count_images(metas) {
+                Ok(found) => counts.extend(found.into_iter().map(Some)),
+                Err(_) => counts.extend(metas.iter().map(|_| None)),
+            }
+        }
+        counts
+    }
+
+    /// The episodes of one file: they stand together.
+    fn metas_of(&self, home: usize) -> &[EpisodeMeta] {
+        let start = self.homes.partition_point(|&h| h < home);
+        let end = self.homes.partition_point(|&h| h <= home);
+        &self.metas[start..end]
+    }
+
+    fn file_report(&self, home: usize) -> FileReport {
+        let file = &self.files[home];
+        let index = &file.index;
+        let secs: f64 = file
+            .episodes()
+            .iter()
+            .map(|meta| meta.end_nanos.saturating_sub(meta.start_nanos) as f64 * 1e-9)
+            .sum();
+        let mut topics: Vec<_> = index
+            .channels
+            .iter()
+            .map(|(id, channel)| {
+                let messages = index.counts.get(id).copied().unwrap_or(0);
+                TopicReport {
+                    topic: channel.topic.clone(),
+                    message_type: index
+                        .schemas
+                        .get(&channel.schema_id)
+                        .map(|s| s.name.clone()),
+                    role: file.streams.get(id).map(|&Stream { role, .. }| role),
+                    messages,
+                    rate_hz: (secs > 0.0).then(|| messages as f64 / secs),
+                }
+            })
+            .collect();
+        topics.sort_by(|a, b| a.topic.cmp(&b.topic));
+        FileReport {
+            path: file.path.clone(),
+            bytes: index.bytes,
+            profile: index.profile.clone(),
+            library: index.library.clone(),
+            compression: index.compression.iter().cloned().collect(),
+            chunks: index.chunks,
+            messages: index.counts.values().sum(),
+            start_nanos: index.log_times.map(|(first, _)| first),
+            end_nanos: index.log_times.map(|(_, last)| last),
+            data_hash: index.hash.clone(),
+            episodes: self.metas_of(home).len(),
+            topics,
+            left_out: file.left_out.clone(),
+            notes: index.notes.clone(),
+        }
+    }
+}
+
+impl EpisodeSource for Dataset {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn data_hash(&self) -> &str {
+        &self.hash
+    }
+
+    fn metas(&self) -> &[EpisodeMeta] {
+        &self.metas
+    }
+
+    fn load(&self, index: usize, layout: Layout) -> Result<Episode, SourceError> {
+        self.episode_aligned(index, layout)
+            .map_err(|error| SourceError(error.to_string()))
+    }
+}
+
+/// The `.mcap` files of a folder, by name.
+fn mcap_files(folder: &Path) -> Result<Vec<PathBuf>, DataError> {
+    let mut paths = Vec::new();
+    for entry in fs::read_dir(folder).map_err(DataError::io(folder))? {
+        let path = entry.map_err(DataError::io(folder))?.path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "mcap")
+        {
+            paths.push(path);
+        }
+    }
+    if paths.is_empty() {
+        return Err(DataError::EmptyFolder(folder.to_owned()));
+    }
+    paths.sort();
+    Ok(paths)
+}

@@ -1,0 +1,163 @@
+//! Compares a definition that came with a file with the layout that is decoded here: a type that was changed under
+//! its name would decode to nonsense, so its topic is left out instead.
+
+use re_ros_msg::MessageSchema;
+use re_ros_msg::message_spec::{ArraySize, BuiltInType, ComplexType, MessageSpecification, Type};
+
+use super::message_type::MessageType;
+
+/// Deeper nesting than any ROS message has; a type that contains itself is deeper still.
+const DEPTH_LIMIT: usize = 16;
+/// More text, or more fields, than any of the format's types can have.
+const TEXT_LIMIT: usize = 1 << 20;
+const FIELD_LIMIT: usize = 1000;
+
+/// Whether messages of `text` (in `ros2msg`) have the layout of `ty`.
+///
+/// # Errors
+/// A phrase that says what differs.
+pub(super) fn check(ty: MessageType, text: &str) -> Result<(), String> {
+    let theirs = fields(ty.name(), text)?;
+    let ours = fields(ty.name(), &ty.definition())?;
+    if theirs == ours {
+        return Ok(());
+    }
+    let differs = theirs.iter().zip(&ours).find(|(a, b)| a != b);
+    Err(match differs {
+        Some((theirs, ours)) => {
+            format!("its definition in the file has `{theirs}` where `{ours}` is expected")
+        }
+        None => format!(
+            "its definition in the file has {} fields where {} are expected",
+            theirs.len(),
+            ours.len()
+        ),
+    })
+}
+
+/// Every primitive field of a definition in order, as `type path`.
+fn fields(name: &str, text: &str) -> Result<Vec<String>, String> {
+    if text.len() > TEXT_LIMIT {
+        return Err("its definition is longer than 1 MiB".to_owned());
+    }
+    let schema = MessageSchema::parse(name, &text.replace("/msg/", "/"))
+        .map_err(|error| format!("its definition cannot be parsed: {error:#}"))?;
+    let mut found = Vec::new();
+    flatten(&schema, &schema.spec, "", 0, &mut found)?;
+    Ok(found)
+}
+
+fn flatten(
+    schema: &MessageSchema,
+    spec: &MessageSpecification,
+    prefix: &str,
+    depth: usize,
+    found: &mut Vec<String>,
+) -> Result<(), String> {
+    if depth > DEPTH_LIMIT || found.len() > FIELD_LIMIT {
+        return Err("its definition nests without end".to_owned());
+    }
+    for field in &spec.fields {
+        let path = format!("{prefix}{}", field.name);
+        let (element, suffix) = match &field.ty {
+            Type::Array { ty, size } => (
+                ty.as_ref(),
+                match size {
+                    ArraySize::Fixed(length) => format!("[{length}]"),
+                    // A bound does not change the layout.
+                    ArraySize::Bounded(_) | ArraySize::Unbounded => "[]".to_owned(),
+                },
+            ),
+            other => (other, String::new()),
+        };
+        match element {
+            Type::BuiltIn(primitive) => {
+                found.push(format!("{}{suffix} {path}", layout_name(primitive)));
+            }
+            Type::Complex(complex) => {
+                let nested = resolve(schema, spec, complex)?;
+                flatten(
+                    schema,
+                    nested,
+                    &format!("{path}{suffix}."),
+                    depth + 1,
+                    found,
+                )?;
+            }
+            Type::Array { .. } => return Err("it has arrays of arrays".to_owned()),
+        }
+    }
+    Ok(())
+}
+
+/// A primitive's name, the same for those of the same layout.
+fn layout_name(primitive: &BuiltInType) -> String {
+    match primitive {
+        BuiltInType::Byte | BuiltInType::Char | BuiltInType::UInt8 => "uint8".to_owned(),
+        BuiltInType::String(_) => "string".to_owned(),
+        BuiltInType::WString(_) => "wstring".to_owned(),
+        other => format!("{other:?}").to_lowercase(),
+    }
+}
+
+/// A relative name means the package of the message that uses it.
+fn resolve<'a>(
+    schema: &'a MessageSchema,
+    user: &MessageSpecification,
+    complex: &ComplexType,
+) -> Result<&'a MessageSpecification, String> {
+    let wanted = match complex {
+        ComplexType::Absolute { package, name } => format!("{package}/{name}"),
+        // ROS 1 wrote it without its package.
+        ComplexType::Relative { name } if name == "Header" => "std_msgs/Header".to_owned(),
+        ComplexType::Relative { name } => {
+            let package = user.name.split('/').next().unwrap_or_default();
+            format!("{package}/{name}")
+        }
+    };
+    schema
+        .dependencies
+        .iter()
+        .find(|spec| spec.name == wanted)
+        .ok_or_else(|| format!("its definition uses {wanted} and does not define it"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EVERY: [MessageType; 6] = [
+        MessageType::Image,
+        MessageType::CompressedImage,
+        MessageType::Wrench,
+        MessageType::Pose,
+        MessageType::Twist,
+        MessageType::Point,
+    ];
+
+    #[test]
+    fn our_own_definitions_pass() {
+        for ty in EVERY {
+            assert_eq!(check(ty, &ty.definition()), Ok(()), "{}", ty.name());
+        }
+    }
+
+    #[test]
+    fn spelling_does_not_matter_but_layout_does() {
+        let text = MessageType::Wrench.definition();
+        let spelled = text
+            .replace("geometry_msgs/Vector3 force", "Vector3 force # newtons")
+            .replace("MSG: geometry_msgs/", "MSG: geometry_msgs/msg/");
+        assert_eq!(check(MessageType::Wrench, &spelled), Ok(()));
+        let single = text.replace("float64 y", "float32 y");
+        let said = check(MessageType::Wrench, &single).unwrap_err();
+        assert!(said.contains("float32 wrench.force.y"), "{said}");
+    }
+
+    #[test]
+    fn a_type_that_contains_itself_is_refused() {
+        let text = "Loop next\n===\nMSG: geometry_msgs/Loop\nLoop next\n";
+        let said = check(MessageType::Point, text).unwrap_err();
+        assert!(said.contains("without end"), "{said}");
+    }
+}
