@@ -2,4 +2,6 @@
 //! training alike. Knows no network and no file.
 
 pub mod bootstrap;
+pub mod ellipse;
 pub mod frame;
+pub mod fusion;
