@@ -31,7 +31,10 @@ const EPOCHS: usize = 20;
 /// Runs it.
 pub fn run(args: TrainArgs) -> anyhow::Result<()> {
     if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new().num_threads(threads.max(1)).build_global().context("starting threads")?;
+        rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.max(1))
+            .build_global()
+            .context("starting threads")?;
     }
     let stop = Arc::new(AtomicBool::new(false));
     for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
@@ -52,7 +55,11 @@ pub fn run(args: TrainArgs) -> anyhow::Result<()> {
         dataset.name(),
         sets.train.len(),
         sets.val.len(),
-        if sets.left_out > 0 { format!(", {} left out (see `poescope info`)", sets.left_out) } else { String::new() },
+        if sets.left_out > 0 {
+            format!(", {} left out (see `poescope info`)", sets.left_out)
+        } else {
+            String::new()
+        },
     );
     if sets.train.len() < config.training.batch {
         bail!(
@@ -65,34 +72,63 @@ pub fn run(args: TrainArgs) -> anyhow::Result<()> {
     statistics::complete(&mut config, &sets.train);
     let model = Model::new(config, args.seed, &Device::Cpu)?;
     std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
-    let mut state = if args.resume { State::load(&model, &args.out)? } else { State::default() };
+    let mut state = if args.resume {
+        State::load(&model, &args.out)?
+    } else {
+        State::default()
+    };
     let budget = Budget {
-        epochs: args.epochs.or_else(|| args.minutes.is_none().then_some(EPOCHS)),
+        epochs: args
+            .epochs
+            .or_else(|| args.minutes.is_none().then_some(EPOCHS)),
         minutes: args.minutes,
     };
     let bar = bar();
-    let run = Run { train: &sets.train, val: &sets.val, folder: &args.out, seed: args.seed, budget, stop: &stop };
+    let run = Run {
+        train: &sets.train,
+        val: &sets.val,
+        folder: &args.out,
+        seed: args.seed,
+        budget,
+        stop: &stop,
+    };
     let outcome = train::run(&model, &mut state, run, |progress| show(&bar, progress))?;
     bar.finish();
     let validation = validate(&model, &sets.val)?;
     finish(&model, &sets, &args.out)?;
-    let report = Report { args: &args, dataset: &dataset, sets: &sets, state: &state, model: &model };
+    let report = Report {
+        args: &args,
+        dataset: &dataset,
+        sets: &sets,
+        state: &state,
+        model: &model,
+    };
     report.write(&validation)?;
     match outcome {
         Outcome::Finished => eprintln!("trained: {}", args.out.display()),
-        Outcome::Stopped => eprintln!("stopped and saved; go on with the same command and --resume"),
+        Outcome::Stopped => {
+            eprintln!("stopped and saved; go on with the same command and --resume")
+        }
     }
     Ok(())
 }
 
 fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
     if args.out.join(STATE).exists() {
-        bail!("{} holds a run already; add --resume to go on with it, or choose another --out", args.out.display());
+        bail!(
+            "{} holds a run already; add --resume to go on with it, or choose another --out",
+            args.out.display()
+        );
     }
     match &args.config {
         Some(path) => Ok(checkpoint::load_config(path)?),
-        None => Config::named(&args.model)
-            .with_context(|| format!("no model {:?}; there are {}", args.model, Config::NAMES.join(", "))),
+        None => Config::named(&args.model).with_context(|| {
+            format!(
+                "no model {:?}; there are {}",
+                args.model,
+                Config::NAMES.join(", ")
+            )
+        }),
     }
 }
 
@@ -104,10 +140,16 @@ struct Sets {
 }
 
 fn load(dataset: &Dataset, layout: Layout, seed: u64) -> anyhow::Result<Sets> {
-    let mut sets = Sets { train: Vec::new(), val: Vec::new(), left_out: 0 };
+    let mut sets = Sets {
+        train: Vec::new(),
+        val: Vec::new(),
+        left_out: 0,
+    };
     let bar = bar();
     bar.set_length(dataset.metas().len() as u64);
-    bar.set_style(ProgressStyle::with_template("reading {bar:30} {pos}/{len} episodes")?);
+    bar.set_style(ProgressStyle::with_template(
+        "reading {bar:30} {pos}/{len} episodes",
+    )?);
     for (index, split) in dataset.splits(seed).into_iter().enumerate() {
         bar.inc(1);
         if split == Split::Test {
@@ -129,7 +171,11 @@ fn load(dataset: &Dataset, layout: Layout, seed: u64) -> anyhow::Result<Sets> {
 }
 
 fn bar() -> ProgressBar {
-    if std::io::stderr().is_terminal() { ProgressBar::new(1000) } else { ProgressBar::hidden() }
+    if std::io::stderr().is_terminal() {
+        ProgressBar::new(1000)
+    } else {
+        ProgressBar::hidden()
+    }
 }
 
 fn show(bar: &ProgressBar, progress: &Progress) {
@@ -145,13 +191,23 @@ fn show(bar: &ProgressBar, progress: &Progress) {
         losses.windows,
         losses.kl,
     );
-    bar.set_style(ProgressStyle::with_template("{bar:20} {msg}").unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar.set_style(
+        ProgressStyle::with_template("{bar:20} {msg}")
+            .unwrap_or_else(|_| ProgressStyle::default_bar()),
+    );
     bar.set_position((progress.fraction * 1000.0) as u64);
     bar.set_message(line.clone());
     if let Some(Validation { losses, psnr_db }) = &progress.validation {
         let mean = psnr_db.iter().sum::<f64>() / psnr_db.len().max(1) as f64;
-        let line = format!("{line}  | val vision {:.2} KL {:.2} open loop {mean:.2} dB", losses.vision, losses.kl);
-        if bar.is_hidden() { eprintln!("{line}") } else { bar.println(line) }
+        let line = format!(
+            "{line}  | val vision {:.2} KL {:.2} open loop {mean:.2} dB",
+            losses.vision, losses.kl
+        );
+        if bar.is_hidden() {
+            eprintln!("{line}")
+        } else {
+            bar.println(line)
+        }
     }
 }
 
@@ -161,13 +217,20 @@ fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Res
     let mut positions = Positions::default();
     positions.beliefs.latent = config.latent;
     for episode in episodes {
-        let Some(object) = &episode.object else { continue };
+        let Some(object) = &episode.object else {
+            continue;
+        };
         let seen = observe(config, episode)?;
         let experts = inspector.encode(&seen)?;
-        let beliefs = inspector.filter(&experts, &Alphas::trained(seen.beliefs, config.switches()))?;
+        let beliefs =
+            inspector.filter(&experts, &Alphas::trained(seen.beliefs, config.switches()))?;
         positions.beliefs.mean.extend(beliefs.posterior.mean);
         positions.beliefs.log_var.extend(beliefs.posterior.log_var);
-        positions.truth.extend(object[config.frame_stack..].iter().map(|pose| [pose.x, pose.y]));
+        positions.truth.extend(
+            object[config.frame_stack..]
+                .iter()
+                .map(|pose| [pose.x, pose.y]),
+        );
     }
     Ok(positions)
 }
@@ -176,7 +239,14 @@ fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Res
 fn finish(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<()> {
     let inspector = Inspector::new(model)?;
     let fit = positions(&inspector, &sets.train)?;
-    let held_out = positions(&inspector, if sets.val.is_empty() { &sets.train } else { &sets.val })?;
+    let held_out = positions(
+        &inspector,
+        if sets.val.is_empty() {
+            &sets.train
+        } else {
+            &sets.val
+        },
+    )?;
     if let Some(probe) = Probe::fit(&fit, &held_out) {
         probe.write(&folder.join(checkpoint::PROBE))?;
     }

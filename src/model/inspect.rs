@@ -42,7 +42,9 @@ impl<M: Borrow<Model>> Inspector<M> {
     /// Each expert's Gaussian at each belief of `observations`.
     pub fn encode(&self, observations: &Observations) -> Result<ExpertTrace> {
         let mut experts = Vec::new();
-        for ((encoder, weights), seen) in self.model().encoders
+        for ((encoder, weights), seen) in self
+            .model()
+            .encoders
             .iter()
             .zip(&self.weights.encoders)
             .zip(&observations.experts)
