@@ -20,6 +20,7 @@ pub mod settings;
 pub mod snapshot;
 pub mod state;
 pub mod switches;
+pub mod trained;
 
 mod perform;
 mod planning;

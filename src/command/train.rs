@@ -13,6 +13,7 @@ use serde_json::json;
 use crate::cli::TrainArgs;
 use crate::data::Dataset;
 use crate::episode::{Episode, EpisodeSource, Layout, Split};
+use crate::eval;
 use crate::model::Model;
 use crate::model::checkpoint;
 use crate::model::config::Config;
@@ -235,7 +236,7 @@ fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Res
     Ok(positions)
 }
 
-/// Fits the position probe and writes it beside the weights.
+/// Writes what goes beside the weights: the position probe and the mean training frame.
 fn finish(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<()> {
     let inspector = Inspector::new(model)?;
     let fit = positions(&inspector, &sets.train)?;
@@ -250,6 +251,16 @@ fn finish(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<()> {
     if let Some(probe) = Probe::fit(&fit, &held_out) {
         probe.write(&folder.join(checkpoint::PROBE))?;
     }
+    let pixels = eval::mean_frame(sets.train.iter())
+        .into_iter()
+        .map(|p| (p * 255.0).round() as u8)
+        .collect();
+    let side = model.config.frame_size as u32;
+    let frame = image::GrayImage::from_raw(side, side, pixels)
+        .context("frames of another size than the model's")?;
+    let mut png = std::io::Cursor::new(Vec::new());
+    frame.write_to(&mut png, image::ImageFormat::Png)?;
+    checkpoint::write_atomic(&folder.join(checkpoint::MEAN_FRAME), &png.into_inner())?;
     Ok(())
 }
 

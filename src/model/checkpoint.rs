@@ -45,6 +45,8 @@ pub const CONFIG: &str = "config.toml";
 pub const WEIGHTS: &str = "weights.safetensors";
 /// The position probe's file name.
 pub const PROBE: &str = "probe.safetensors";
+/// The mean training frame's file name: the predictor that always says it stands in every table.
+pub const MEAN_FRAME: &str = "mean_frame.png";
 /// The report's file name.
 pub const REPORT: &str = "report.json";
 

@@ -33,6 +33,9 @@ pub struct Config {
     pub frame_stack: usize,
     /// W, samples of a window.
     pub window: usize,
+    /// Time between two images in the training set; none until one has been seen.
+    #[serde(default)]
+    pub step_secs: Option<f64>,
     /// Z.
     pub latent: usize,
     /// Hidden state of the recurrent network.
@@ -108,6 +111,7 @@ impl Config {
             frame_size: 64,
             frame_stack: 1,
             window: 32,
+            step_secs: None,
             latent: 16,
             hidden: 256,
             mixtures: 15,

@@ -33,6 +33,105 @@ pub enum ObserveError {
     },
 }
 
+/// A model was trained on another kind of data than it is shown.
+#[derive(Debug, Error)]
+pub enum Unsuited {
+    /// The time between images differs.
+    #[error(
+        "model `{model}` was trained on images {trained_secs:.3} s apart, those of episode `{episode}` are \
+         {found_secs:.3} s apart; choose a model trained on such data"
+    )]
+    Rate {
+        /// The model's name.
+        model: String,
+        /// In its training set.
+        trained_secs: f64,
+        /// The episode's name.
+        episode: String,
+        /// In the episode.
+        found_secs: f64,
+    },
+    /// A channel is far outside of what the model has seen.
+    #[error(
+        "channel `{channel}` of episode `{episode}` is {times:.0} of model `{model}`'s scales from its mean: other \
+         units or another sensor than it was trained on; choose a model trained on such data"
+    )]
+    Scaling {
+        /// The channel.
+        channel: String,
+        /// The model's name.
+        model: String,
+        /// The episode's name.
+        episode: String,
+        /// Root mean square of the scaled channel.
+        times: f32,
+    },
+}
+
+/// Times between images may differ by this factor from those of the training set.
+const RATE_TOLERANCE: f64 = 1.25;
+/// Scaled channels have a root mean square near 1 in training; beyond this they are of another kind.
+const SCALE_TOLERANCE: f32 = 30.0;
+
+/// Whether `episode` is of the kind of data the model was trained on: image rate, and units of its channels.
+pub fn suits(config: &Config, episode: &Episode) -> Result<(), Unsuited> {
+    if let (Some(trained_secs), Some(found_secs)) = (config.step_secs, episode.step_secs()) {
+        let ratio = (found_secs / trained_secs).max(trained_secs / found_secs);
+        if ratio.is_nan() || ratio > RATE_TOLERANCE {
+            let (model, episode) = (config.name.clone(), episode.meta.id.clone());
+            return Err(Unsuited::Rate {
+                model,
+                trained_secs,
+                episode,
+                found_secs,
+            });
+        }
+    }
+    for (channels, modality) in config
+        .experts
+        .iter()
+        .flat_map(|&expert| config.channels(expert))
+    {
+        let Some((data, known)) = channels_of(episode, modality) else {
+            continue;
+        };
+        for ((at, mean, scale), channel) in channels.columns(known).zip(&channels.names) {
+            let squares = data
+                .iter()
+                .skip(at)
+                .step_by(6)
+                .map(|x| ((x - mean) / scale).powi(2))
+                .sum::<f32>();
+            let times = (squares * 6.0 / data.len() as f32).sqrt();
+            if times.is_nan() || times > SCALE_TOLERANCE {
+                let (model, episode) = (config.name.clone(), episode.meta.id.clone());
+                return Err(Unsuited::Scaling {
+                    channel: channel.clone(),
+                    model,
+                    episode,
+                    times,
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The windows of a modality and the names of its channels; none for vision or where not recorded.
+fn channels_of(episode: &Episode, modality: Modality) -> Option<(&[f32], &'static [&'static str])> {
+    match modality {
+        Modality::Vision => None,
+        Modality::Haptic => episode
+            .haptic
+            .as_deref()
+            .map(|data| (data, &HAPTIC_CHANNELS[..])),
+        Modality::Proprio => episode
+            .proprio
+            .as_deref()
+            .map(|data| (data, &PROPRIO_CHANNELS[..])),
+    }
+}
+
 /// What each expert of a model sees of one episode, belief by belief.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observations {
@@ -140,11 +239,7 @@ fn frames(episode: &Episode, stack: usize) -> Vec<f32> {
 fn windows(config: &Config, expert: Expert, episode: &Episode, stack: usize) -> Vec<f32> {
     let mut sources = Vec::new();
     for (channels, modality) in config.channels(expert) {
-        let (data, known) = match modality {
-            Modality::Haptic => (&episode.haptic, &HAPTIC_CHANNELS),
-            _ => (&episode.proprio, &PROPRIO_CHANNELS),
-        };
-        if let Some(data) = data {
+        if let Some((data, known)) = channels_of(episode, modality) {
             sources.push((data, channels.columns(known).collect::<Vec<_>>()));
         }
     }

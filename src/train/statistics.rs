@@ -11,6 +11,9 @@ const FLOORS: [[f32; 6]; 2] = [[0.1, 0.1, 0.1, 0.01, 0.01, 0.01], [0.001; 6]];
 
 /// Fills in scaling and error weights where the config has none.
 pub fn complete(config: &mut Config, episodes: &[Episode]) {
+    if config.step_secs.is_none() {
+        config.step_secs = episodes.first().and_then(Episode::step_secs);
+    }
     for modality in [Modality::Haptic, Modality::Proprio] {
         let haptic = modality == Modality::Haptic;
         let known = if haptic {
