@@ -24,7 +24,7 @@ pub struct Scene {
 }
 
 impl Default for Scene {
-    /// A wooden board of 14 cm and 1.5 kg, in the reach of a table-top arm whose base is the origin.
+    /// An aluminium plate of 14 cm and 1.5 kg, in the reach of a table-top arm whose base is the origin.
     fn default() -> Self {
         Self {
             plate_side_m: 0.14,
