@@ -1,1 +1,6 @@
 //! What crosses folders, one module a theme.
+
+mod align;
+mod damage;
+mod data;
+mod opening;
