@@ -24,6 +24,7 @@ mod report;
 mod scan;
 mod schema;
 mod split;
+mod streams;
 mod summary;
 mod topics;
 mod write;

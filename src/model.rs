@@ -10,6 +10,7 @@ pub mod dynamics;
 pub mod elbo;
 pub mod encoder;
 pub mod experts;
+pub mod fallback;
 pub mod filter;
 pub mod gaussian;
 pub mod inspect;

@@ -107,15 +107,23 @@ impl Dataset {
             file.left_out.push(LeftOut { what, why });
             metas.clear();
         }
+        // Exact where the file was read through anyway; else the chunk indexes rule out what they can.
+        let counts = if file.index.scanned {
+            file.count_images(&metas).unwrap_or_default()
+        } else {
+            Vec::new()
+        };
+        let mut counts = counts.into_iter();
         metas.retain(|meta| {
-            let blind = file.is_blind(meta);
-            if blind {
+            let images = counts.next().unwrap_or(2);
+            let kept = images >= 2 && !file.is_blind(meta);
+            if !kept {
                 file.left_out.push(LeftOut {
                     what: format!("episode {}", meta.id),
-                    why: "no image, and an episode needs two".to_owned(),
+                    why: "has fewer than two images".to_owned(),
                 });
             }
-            !blind
+            kept
         });
         self.homes
             .resize(self.homes.len() + metas.len(), self.files.len());

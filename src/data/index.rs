@@ -65,6 +65,10 @@ pub(super) struct Index {
     pub(super) log_times: Option<(u64, u64)>,
     /// What the file's `episode` records say.
     pub(super) episodes: Vec<EpisodeMeta>,
+    /// Whether it comes from a pass over the records, not from a summary.
+    pub(super) scanned: bool,
+    /// Whether the file ends in the middle.
+    pub(super) cut: bool,
     /// What is worth telling about how it was opened.
     pub(super) notes: Vec<String>,
     /// The data hash, 16 hexadecimal digits.

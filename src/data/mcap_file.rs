@@ -13,11 +13,10 @@ use super::chunk::{parse, unpack};
 use super::collect::{Collector, Stream};
 use super::error::DataError;
 use super::index::{Index, Span};
-use super::message_type::MessageType;
 use super::record::{LENGTH_LIMIT, Records, split_message};
 use super::report::LeftOut;
 use super::topics::{Role, Topics};
-use super::{scan, schema, summary};
+use super::{scan, streams, summary};
 use crate::episode::{EpisodeMeta, Recording};
 
 /// A file whose messages are read by seeking, one episode at a time.
@@ -48,111 +47,49 @@ impl McapFile {
                 what: what_it_is(&start).to_owned(),
             });
         }
-        let index = match summary::read(&mut file, length) {
+        let mut index = match summary::read(&mut file, length) {
             Ok(index) => index,
             Err(why) => scan::read(&mut file, length, &why).map_err(DataError::io(path))?,
         };
-        let mut opened = Self {
+        let found = streams::find(&index, topics);
+        index.notes.extend(found.notes);
+        Ok(Self {
             number,
             path: path.to_owned(),
             index,
-            streams: BTreeMap::new(),
-            left_out: Vec::new(),
-        };
-        opened.find_streams(topics);
-        Ok(opened)
+            streams: found.streams,
+            left_out: found.left_out,
+        })
     }
 
-    fn find_streams(&mut self, topics: &Topics) {
-        for (&id, channel) in &self.index.channels {
-            let Some(role) = topics.role(&channel.topic) else {
-                self.left_out.push(LeftOut {
-                    what: channel.topic.clone(),
-                    why: "has no role; name it in dataset.toml to give it one".to_owned(),
-                });
-                continue;
-            };
-            match self.stream(role, id) {
-                Ok(stream) => {
-                    self.streams.insert(id, stream);
-                }
-                Err(why) => self.left_out.push(LeftOut {
-                    what: channel.topic.clone(),
-                    why,
-                }),
-            }
-        }
-        for stream in self.streams.iter() {
-            let Some(channel) = self.index.channels.get(stream.0) else {
-                continue;
-            };
-            let schema = self.index.schemas.get(&channel.schema_id);
-            if schema.is_some_and(|schema| schema.text.is_empty()) {
-                self.index.notes.push(format!(
-                    "{}: the file has no definition of {}, so the built-in one is used",
-                    channel.topic,
-                    stream.1.ty.name()
-                ));
-            }
-        }
-    }
-
-    /// How to read channel `id` as `role`, or why it cannot be.
-    fn stream(&self, role: Role, id: u16) -> Result<Stream, String> {
-        let channel = self.index.channels.get(&id).ok_or("it is not described")?;
-        let schema = self
-            .index
-            .schemas
-            .get(&channel.schema_id)
-            .ok_or("it has no schema, so its type is unknown; record it with its definition")?;
-        if channel.encoding != "cdr" {
-            return Err(format!(
-                "messages of {} are encoded as {:?}; only cdr can be read",
-                schema.name, channel.encoding
-            ));
-        }
-        let accepted = role.types();
-        let ty = MessageType::from_name(&schema.name)
-            .filter(|ty| accepted.contains(ty))
-            .ok_or_else(|| {
-                let names: Vec<_> = accepted.iter().map(|ty| ty.name()).collect();
-                format!(
-                    "has type {}; as {} it can be {}",
-                    schema.name,
-                    role.name(),
-                    names.join(" or ")
-                )
-            })?;
-        if schema.text.is_empty() {
-            return Ok(Stream { role, ty });
-        }
-        if schema.encoding != "ros2msg" {
-            return Err(format!(
-                "the definition of {} is in {:?}; only ros2msg can be read",
-                schema.name, schema.encoding
-            ));
-        }
-        let text = std::str::from_utf8(&schema.text)
-            .map_err(|_| format!("the definition of {} is no text", schema.name))?;
-        schema::check(ty, text).map_err(|why| format!("has type {}, but {why}", schema.name))?;
-        Ok(Stream { role, ty })
-    }
-
-    /// The episodes that the file names; else all of it is one, if it holds messages.
+    /// The episodes that the file names; else all of it is one, if it holds messages. What stands behind the last
+    /// record of a file that was cut off is one, too: `unfinished`.
     pub(super) fn episodes(&self) -> Vec<EpisodeMeta> {
-        if !self.index.episodes.is_empty() {
-            return self.index.episodes.clone();
-        }
-        let whole = self.index.log_times.map(|(first, last)| EpisodeMeta {
-            id: self
-                .path
-                .file_stem()
-                .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
-            start_nanos: i64::try_from(first).unwrap_or(i64::MAX),
-            end_nanos: i64::try_from(last).unwrap_or(i64::MAX),
+        let mut metas = self.index.episodes.clone();
+        let Some((first, last)) = self.index.log_times else {
+            return metas;
+        };
+        let nanos = |log_time| i64::try_from(log_time).unwrap_or(i64::MAX);
+        let named_until = metas.iter().map(|meta| meta.end_nanos).max();
+        let (id, start_nanos) = match named_until {
+            None => (
+                self.path
+                    .file_stem()
+                    .unwrap_or_default()
+                    .to_string_lossy()
+                    .into_owned(),
+                nanos(first),
+            ),
+            Some(end) if self.index.cut && end < nanos(last) => ("unfinished".to_owned(), end + 1),
+            Some(_) => return metas,
+        };
+        metas.push(EpisodeMeta {
+            id,
+            start_nanos,
+            end_nanos: nanos(last),
             ..EpisodeMeta::default()
         });
-        whole.into_iter().collect()
+        metas
     }
 
     /// Messages on the camera's channels in the whole file.
@@ -179,12 +116,11 @@ impl McapFile {
         })
     }
 
-    fn spans_of<'a>(&'a self, meta: &EpisodeMeta) -> impl Iterator<Item = &'a Span> + use<'a> {
-        let (start, end) = log_range(meta);
+    fn spans_of<'a>(&'a self, meta: &'a EpisodeMeta) -> impl Iterator<Item = &'a Span> {
         self.index
             .spans
             .iter()
-            .filter(move |span| span.log_times.0 <= end && span.log_times.1 >= start)
+            .filter(move |span| overlaps(span, meta))
     }
 
     /// Reads one episode's messages, from the spans that it touches.
@@ -218,6 +154,9 @@ impl McapFile {
         let mut file = File::open(&self.path).map_err(DataError::io(&self.path))?;
         let mut counts = vec![0; metas.len()];
         for span in &self.index.spans {
+            if !metas.iter().any(|meta| overlaps(span, meta)) {
+                continue;
+            }
             let mut seen = Vec::new();
             if span.message_indexes.is_empty() {
                 let block = self.read_span(&mut file, span)?;
@@ -234,7 +173,7 @@ impl McapFile {
             }
             for (meta, count) in metas.iter().zip(&mut counts) {
                 let (start, end) = log_range(meta);
-                if span.log_times.0 <= end && span.log_times.1 >= start {
+                if overlaps(span, meta) {
                     *count += seen
                         .iter()
                         .filter(|&log| (start..=end).contains(log))
@@ -314,6 +253,12 @@ impl McapFile {
             what,
         }
     }
+}
+
+/// Whether a span may hold messages of an episode.
+fn overlaps(span: &Span, meta: &EpisodeMeta) -> bool {
+    let (start, end) = log_range(meta);
+    span.log_times.0 <= end && span.log_times.1 >= start
 }
 
 /// An episode's first and last log time.

@@ -22,6 +22,7 @@ const RUN_LENGTH: u64 = 1 << 20;
 pub(super) fn read(file: &mut File, length: u64, why: &str) -> std::io::Result<Index> {
     let mut index = Index {
         bytes: length,
+        scanned: true,
         notes: vec![format!("{why}: the file was read through once")],
         ..Index::default()
     };
@@ -152,6 +153,7 @@ impl Scan<'_> {
         let secs = self.index.log_times.map_or(0.0, |(first, last)| {
             last.saturating_sub(first) as f64 * 1e-9
         });
+        self.index.cut = true;
         self.index.notes.push(format!(
             "cut off at byte {offset} of {}: {messages} messages over {secs:.3} s stand before it",
             self.index.bytes

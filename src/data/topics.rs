@@ -110,9 +110,19 @@ impl Topics {
         };
         let parsed: DatasetToml = toml::from_str(&text).map_err(|error| DataError::Mapping {
             what: error.message().to_owned(),
-            path,
+            path: path.clone(),
         })?;
-        Ok(parsed.topics)
+        let topics = parsed.topics;
+        for (i, a) in Role::ALL.into_iter().enumerate() {
+            for b in Role::ALL.into_iter().skip(i + 1) {
+                if topics.topic(a) == topics.topic(b) {
+                    let topic = topics.topic(a);
+                    let what = format!("topic {topic} is both {} and {}", a.name(), b.name());
+                    return Err(DataError::Mapping { path, what });
+                }
+            }
+        }
+        Ok(topics)
     }
 
     /// The topic of `role`.

@@ -1,12 +1,13 @@
 //! A latent to what an expert sees: image decoder (Ha & Schmidhuber 2018) and window decoder.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use candle_core::{Device, Result, Tensor};
 use rand::Rng;
 
 use super::config::Config;
 use super::encoder::row_windows;
+use super::fallback;
 use super::kernel::chain::{Apply, Chain};
 use super::kernel::gather::Windows;
 use super::kernel::pointwise::Activation;
@@ -117,6 +118,9 @@ impl Decoder {
 
     /// Latents `(n, Z)` to observations `(n, outputs)`, without a gradient.
     pub fn decode(&self, latents: &Tensor, weights: &Tensor) -> Result<Tensor> {
+        if !weights.device().is_cpu() {
+            return fallback::chain(&self.chain, latents, weights);
+        }
         latents
             .contiguous()?
             .apply_op2_no_bwd(weights, &Apply::new(Arc::clone(&self.chain), false, false))
@@ -131,6 +135,12 @@ impl Decoder {
         sample_weights: Vec<f32>,
         train: bool,
     ) -> Result<(Tensor, PerSample)> {
+        if !weights.device().is_cpu() {
+            let errors = (fallback::chain(&self.chain, latents, weights)? - targets)?.sqr()?.sum(1)?;
+            let per_sample = Arc::new(Mutex::new(errors.to_vec1()?));
+            let factors = Tensor::from_vec(sample_weights, errors.shape(), errors.device())?;
+            return Ok(((errors * factors)?.sum_all()?, per_sample));
+        }
         let op = SquaredError::new(Arc::clone(&self.chain), sample_weights, train);
         let per_sample = op.per_sample();
         let total = latents

@@ -4,6 +4,7 @@ use candle_core::{D, Device, Result, Tensor};
 use rand::Rng;
 
 use super::config::Config;
+use super::fallback;
 use super::gaussian::DiagGaussian;
 use super::kernel::cell::{Cell, Sizes};
 use super::kernel::weight_norm::Stretch;

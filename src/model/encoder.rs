@@ -6,6 +6,7 @@ use candle_core::{Device, Result, Tensor};
 use rand::Rng;
 
 use super::config::Config;
+use super::fallback;
 use super::gaussian::DiagGaussian;
 use super::kernel::chain::{Apply, Chain};
 use super::kernel::gather::Windows;
@@ -128,8 +129,12 @@ impl Encoder {
         weights: &Tensor,
         train: bool,
     ) -> Result<DiagGaussian> {
-        let op = Apply::new(Arc::clone(&self.chain), train, false);
-        let out = observations.contiguous()?.apply_op2(weights, op)?;
+        let out = if weights.device().is_cpu() {
+            let op = Apply::new(Arc::clone(&self.chain), train, false);
+            observations.contiguous()?.apply_op2(weights, op)?
+        } else {
+            fallback::chain(&self.chain, observations, weights)?
+        };
         Ok(DiagGaussian {
             mean: out.narrow(1, 0, self.latent)?.contiguous()?,
             log_var: out.narrow(1, self.latent, self.latent)?.contiguous()?,

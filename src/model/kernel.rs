@@ -15,8 +15,12 @@ pub mod pointwise;
 pub mod squared_error;
 pub mod weight_norm;
 
+#[cfg(test)]
+mod tests;
+
 use std::sync::OnceLock;
 
+use candle_core::backend::BackendStorage as _;
 use candle_core::{CpuStorage, Layout, Result, bail};
 use pulp::Arch;
 
@@ -40,5 +44,3 @@ fn values<'a>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [f32]> {
         (_, other) => bail!("a kernel wants f32 numbers, got {:?}", other.dtype()),
     }
 }
-
-use candle_core::backend::BackendStorage as _;
