@@ -136,7 +136,9 @@ impl Decoder {
         train: bool,
     ) -> Result<(Tensor, PerSample)> {
         if !weights.device().is_cpu() {
-            let errors = (fallback::chain(&self.chain, latents, weights)? - targets)?.sqr()?.sum(1)?;
+            let errors = (fallback::chain(&self.chain, latents, weights)? - targets)?
+                .sqr()?
+                .sum(1)?;
             let per_sample = Arc::new(Mutex::new(errors.to_vec1()?));
             let factors = Tensor::from_vec(sample_weights, errors.shape(), errors.device())?;
             return Ok(((errors * factors)?.sum_all()?, per_sample));

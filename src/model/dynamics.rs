@@ -130,9 +130,13 @@ impl Dynamics {
         weights: &Tensor,
     ) -> Result<Transition> {
         let x = Tensor::cat(&[z, u], 1)?;
-        let out = hidden
-            .contiguous()?
-            .apply_op3(&x, weights, Cell::new(self.sizes))?;
+        let out = if weights.device().is_cpu() {
+            hidden
+                .contiguous()?
+                .apply_op3(&x, weights, Cell::new(self.sizes))?
+        } else {
+            fallback::cell(self.sizes, hidden, &x, weights)?
+        };
         let Sizes { latent, hidden, .. } = self.sizes;
         Ok(Transition {
             hidden: out.narrow(1, 0, hidden)?,

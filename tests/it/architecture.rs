@@ -20,11 +20,23 @@ fn rank(part: &str) -> Option<usize> {
 
 /// Paths that follow `crate::` in a source text, in braces or not, down to their first segment.
 fn imported(text: &str) -> Vec<String> {
-    let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
+    let code: String = text
+        .lines()
+        .filter(|line| !line.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n");
     let mut parts = Vec::new();
-    for (at, prefix) in code.match_indices("crate::").chain(code.match_indices("poescope::")) {
+    for (at, prefix) in code
+        .match_indices("crate::")
+        .chain(code.match_indices("poescope::"))
+    {
         let rest = &code[at + prefix.len()..];
-        let name = |text: &str| text.trim_start().split(|c: char| !c.is_alphanumeric() && c != '_').next().map(str::to_owned);
+        let name = |text: &str| {
+            text.trim_start()
+                .split(|c: char| !c.is_alphanumeric() && c != '_')
+                .next()
+                .map(str::to_owned)
+        };
         match rest.strip_prefix('{') {
             None => parts.extend(name(rest)),
             Some(group) => {
@@ -52,7 +64,10 @@ fn imported(text: &str) -> Vec<String> {
 }
 
 fn files(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
-    let mut entries: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let mut entries: Vec<_> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
     entries.sort();
     for path in entries {
         if path.is_dir() {
@@ -72,7 +87,14 @@ fn imports_run_one_way() {
     let mut edges = 0;
     for path in found {
         let inside = path.strip_prefix(&source).unwrap();
-        let own = inside.iter().next().unwrap().to_str().unwrap().trim_end_matches(".rs").to_owned();
+        let own = inside
+            .iter()
+            .next()
+            .unwrap()
+            .to_str()
+            .unwrap()
+            .trim_end_matches(".rs")
+            .to_owned();
         if own == "lib" {
             continue;
         }
@@ -82,7 +104,11 @@ fn imports_run_one_way() {
                 continue;
             }
             let Some(to) = rank(&part) else { continue };
-            assert!(to < from, "{}: `{own}` must not import `{part}`", inside.display());
+            assert!(
+                to < from,
+                "{}: `{own}` must not import `{part}`",
+                inside.display()
+            );
             edges += 1;
         }
     }
@@ -91,6 +117,9 @@ fn imports_run_one_way() {
 
 #[test]
 fn a_wrong_edge_would_be_seen() {
-    assert_eq!(imported("use crate::{cli::Args, sim::{self, World}};\nlet x = crate::tui::draw();"), ["cli", "sim", "tui"]);
+    assert_eq!(
+        imported("use crate::{cli::Args, sim::{self, World}};\nlet x = crate::tui::draw();"),
+        ["cli", "sim", "tui"]
+    );
     assert!(rank("tui") > rank("session") && rank("model") == rank("sim"));
 }

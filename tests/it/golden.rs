@@ -355,9 +355,9 @@ fn decoded_agree(model: &Model, weights: &Weights, z: &Tensor, theirs: &Value, f
             .unwrap()
             .unsqueeze(0)
             .unwrap();
-        for (index, key, at) in [
-            (0, "image", "pixel_indices"),
-            (1, "context", "context_indices"),
+        for (index, key, at, theirs) in [
+            (0, "image", "pixel_indices", &entry["image"]["values"]),
+            (1, "context", "context_indices", &entry["context_values"]),
         ] {
             if theirs.is_null() {
                 continue;

@@ -6,3 +6,4 @@ mod architecture;
 mod damage;
 mod data;
 mod golden;
+mod opening;
