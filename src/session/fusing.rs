@@ -3,7 +3,7 @@
 //! Each verb returns the line to tell the user; a refusal changes nothing.
 
 use super::command::Scope;
-use super::snapshot::{Badge, ModelInfo};
+use super::snapshot::ModelInfo;
 use super::switches::{Reach, Switches};
 use crate::modality::Expert;
 use crate::model::trace::Alphas;
@@ -137,79 +137,10 @@ pub fn temper(
             "α is a number from 0 to {LARGEST_ALPHA}, not {alpha}"
         ));
     }
+    // There is a -0 too; it is 0.
+    let alpha = alpha.abs();
     change(model, switches, place, &[(expert, alpha)])?;
     Ok(format!("{} α {alpha} {}", expert.name(), place.words()))
-}
-
-/// Whether the model was trained on the switches at a step.
-pub fn badge(model: &ModelInfo, switches: &Switches, step: usize) -> Badge {
-    if !model.has_product() {
-        return Badge::NoProduct;
-    }
-    if let Some((expert, alpha)) = model
-        .factors()
-        .into_iter()
-        .map(|expert| (expert, switches.alpha(expert, step)))
-        .find(|&(_, alpha)| alpha != 0.0 && alpha != 1.0)
-    {
-        return Badge::Untrained(format!("{} α {alpha}", expert.name()));
-    }
-    if model.prior_expert && switches.alpha(Expert::Prior, step) == 0.0 {
-        return Badge::Untrained("prior off".to_owned());
-    }
-    let is_active = |i: usize| {
-        model
-            .experts
-            .get(i)
-            .is_some_and(|&e| switches.alpha(e, step) > 0.0)
-    };
-    let matches = |member: &dyn Fn(usize) -> bool| {
-        (0..model.experts.len()).all(|i| member(i) == is_active(i))
-    };
-    if model
-        .trained_sets
-        .iter()
-        .any(|set| matches(&|i| set.contains(i)))
-    {
-        return Badge::Trained;
-    }
-    Badge::Untrained(format!(
-        "{} never trained; trained: {}",
-        set_name(model, &is_active),
-        trained_names(model)
-    ))
-}
-
-/// What the model was trained on, in a few words.
-fn trained_names(model: &ModelInfo) -> String {
-    match model.trained_sets.len() {
-        0 => "none".to_owned(),
-        count @ 1..=3 => {
-            let sets = &model.trained_sets[..count];
-            let names: Vec<String> = sets
-                .iter()
-                .map(|set| set_name(model, &|i| set.contains(i)))
-                .collect();
-            names.join(", ")
-        }
-        count => format!("{count} sets"),
-    }
-}
-
-fn set_name(model: &ModelInfo, is_member: &dyn Fn(usize) -> bool) -> String {
-    let members = model
-        .experts
-        .iter()
-        .enumerate()
-        .filter(|&(i, _)| is_member(i));
-    let letters: Vec<String> = members
-        .map(|(_, expert)| expert.letter().to_string())
-        .collect();
-    if letters.is_empty() {
-        "prior alone".to_owned()
-    } else {
-        letters.join("+")
-    }
 }
 
 fn factor_at(model: &ModelInfo, position: usize) -> Result<Expert, Refusal> {
@@ -322,27 +253,8 @@ mod tests {
     }
 
     #[test]
-    fn the_badge_says_what_was_trained() {
-        let (model, mut switches) = (vhp(), Switches::default());
-        assert_eq!(badge(&model, &switches, 3), Badge::Trained);
-        toggle(&model, &mut switches, EVERYWHERE, 0).unwrap();
-        let untrained = |why: &str| Badge::Untrained(why.to_owned());
-        assert_eq!(
-            badge(&model, &switches, 3),
-            untrained("J never trained; trained: V+J")
-        );
-        toggle(&model, &mut switches, EVERYWHERE, 0).unwrap();
-        temper(&model, &mut switches, EVERYWHERE, 1, 0.5).unwrap();
-        assert_eq!(badge(&model, &switches, 3), untrained("joint α 0.5"));
-        temper(&model, &mut switches, EVERYWHERE, 1, 1.0).unwrap();
-        toggle(&model, &mut switches, EVERYWHERE, 2).unwrap();
-        assert_eq!(badge(&model, &switches, 3), untrained("prior off"));
-    }
-
-    #[test]
     fn a_model_without_a_product_says_so() {
         let (v, mut switches) = (model(&[Expert::Vision], false, &[1]), Switches::default());
-        assert_eq!(badge(&v, &switches, 0), Badge::NoProduct);
         for refusal in [
             toggle(&v, &mut switches, EVERYWHERE, 0),
             solo(&v, &mut switches, EVERYWHERE, 0),

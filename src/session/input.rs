@@ -192,7 +192,11 @@ fn digit(key: &Key) -> Option<usize> {
 }
 
 #[cfg(test)]
-#[expect(clippy::unwrap_used, reason = "a test may stop here")]
+#[expect(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "a test may stop here; α is compared as it was set"
+)]
 mod tests {
     use std::sync::Arc;
     use std::time::Duration;

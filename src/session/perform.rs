@@ -19,7 +19,7 @@ impl Session {
             Command::TogglePlay => self.playback.toggle(steps),
             Command::Step(by) => self.playback.step(by, steps),
             Command::SeekTo(step) if (1..=steps).contains(&step) => {
-                self.playback.seek(step - 1, steps)
+                self.playback.seek(step - 1, steps);
             }
             Command::SeekTo(step) => self.complain(format!("step {step} is outside 1 to {steps}")),
             Command::SeekClamped(step) => self.playback.seek(step, steps),

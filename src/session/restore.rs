@@ -30,7 +30,9 @@ impl Session {
             }
         }
         self.pending.clear();
-        self.target = target;
+        if target != self.target {
+            self.go_to(target);
+        }
         let restoration = Restoration { state, complaints };
         if self.opened().is_some() {
             self.finish(restoration);

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use super::command::Scope;
 use crate::modality::Expert;
 
-/// α as trained.
+/// α as trained. Values are compared as they were set; none is computed.
 const TRAINED: f32 = 1.0;
 
 /// The steps a change reaches.
@@ -83,7 +83,7 @@ impl Switches {
         starts.push((reach.from, alpha));
         starts.extend(after);
         starts.sort_by_key(|&(start, _)| start);
-        starts.dedup_by(|later, earlier| later.1 == earlier.1);
+        starts.dedup_by(|later, earlier| later.1.total_cmp(&earlier.1).is_eq());
         if *starts == [(0, TRAINED)] {
             self.starts.remove(&expert);
         }
@@ -102,7 +102,7 @@ impl Switches {
         starts
             .iter()
             .zip(ends)
-            .filter(|((_, alpha), _)| *alpha != TRAINED)
+            .filter(|((_, alpha), _)| alpha.total_cmp(&TRAINED).is_ne())
             .map(|(&(from, alpha), until)| Run {
                 reach: Reach { from, until },
                 alpha,

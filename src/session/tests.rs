@@ -1,5 +1,9 @@
 //! Scripts of commands, then a look at the snapshot.
-#![expect(clippy::unwrap_used, reason = "a test may stop here")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "a test may stop here; α is compared as it was set"
+)]
 
 mod faults;
 mod random;

@@ -20,11 +20,10 @@ use memo::{BeliefKey, Memo};
 pub use memo::{Inferred, Target};
 pub use opened::Opened;
 
-use super::fusing::Refusal;
 use super::predict::{PredictError, Predictor};
 use super::settings::{Rollout, Settings};
 use super::snapshot::{Estimate, StepPsnr, StripCell};
-use crate::episode::{EpisodeSource, Layout};
+use crate::episode::{EpisodeSource, Layout, SourceError};
 
 /// Name of the thread, for those who look at threads; a panic on it is caught and told as a message.
 pub const THREAD: &str = "poescope-session";
@@ -132,9 +131,9 @@ enum Stop {
     Fault(String),
 }
 
-impl From<Refusal> for Stop {
-    fn from(why: Refusal) -> Self {
-        Self::Fault(why)
+impl From<SourceError> for Stop {
+    fn from(error: SourceError) -> Self {
+        Self::Fault(error.to_string())
     }
 }
 
