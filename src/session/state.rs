@@ -10,7 +10,7 @@
 use std::fmt::{self, Write};
 
 use super::command::{Looping, Scope};
-use super::switches::{Reach, Run, Switches};
+use super::switches::{LARGEST_ALPHA, Reach, Run, Switches};
 use crate::modality::Expert;
 
 /// The version written, and the only one that can be read.
@@ -197,7 +197,7 @@ fn run(text: &str) -> Option<(Expert, Run)> {
         .split_once('@')
         .map_or((rest, None), |(alpha, steps)| (alpha, Some(steps)));
     let alpha: f32 = alpha.parse().ok()?;
-    if !alpha.is_finite() || alpha < 0.0 {
+    if !(0.0..=LARGEST_ALPHA).contains(&alpha) {
         return None;
     }
     let reach = match steps.map(|steps| {

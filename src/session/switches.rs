@@ -10,6 +10,8 @@ use crate::modality::Expert;
 
 /// α as trained. Values are compared as they were set; none is computed.
 const TRAINED: f32 = 1.0;
+/// Larger than any tempering that means something; keeps precisions finite.
+pub const LARGEST_ALPHA: f32 = 1000.0;
 
 /// The steps a change reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
