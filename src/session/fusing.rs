@@ -4,7 +4,7 @@
 
 use super::command::Scope;
 use super::snapshot::ModelInfo;
-use super::switches::{LARGEST_ALPHA, Reach, Switches};
+use super::switches::{Reach, Switches, checked_alpha};
 use crate::modality::Expert;
 use crate::model::trace::Alphas;
 
@@ -129,13 +129,7 @@ pub fn temper(
     alpha: f32,
 ) -> Result<String, Refusal> {
     let expert = factor_at(model, position)?;
-    if !(0.0..=LARGEST_ALPHA).contains(&alpha) {
-        return Err(format!(
-            "α is a number from 0 to {LARGEST_ALPHA}, not {alpha}"
-        ));
-    }
-    // There is a -0 too; it is 0.
-    let alpha = alpha.abs();
+    let alpha = checked_alpha(alpha)?;
     change(model, switches, place, &[(expert, alpha)])?;
     Ok(format!("{} α {alpha} {}", expert.name(), place.words()))
 }
