@@ -8,6 +8,7 @@
 //! computed follows, and until then the last picture stays and [`Snapshot::busy`] says so. A command that needs the
 //! length of an episode which is still being read waits for it, in order.
 
+pub mod badge;
 pub mod command;
 pub mod fake;
 pub mod fusing;
@@ -84,7 +85,7 @@ enum Pending {
     Restoration(Restoration),
 }
 
-/// What a generation of requests asks for, and the cursor of its newest request.
+/// What a generation of requests asks for; the cursor only orders the work.
 #[derive(PartialEq)]
 struct Wanted {
     target: Target,
@@ -130,7 +131,7 @@ impl Session {
             match worker::spawn(shared, source, models) {
                 Ok(worker) => session.worker = Some(worker),
                 Err(error) => {
-                    session.complain(format!("cannot start a thread to compute on: {error}"))
+                    session.complain(format!("cannot start a thread to compute on: {error}"));
                 }
             }
         }

@@ -3,13 +3,10 @@
 //! Each verb returns the line to tell the user; a refusal changes nothing.
 
 use super::command::Scope;
-use super::snapshot::{Badge, ModelInfo};
-use super::switches::{Reach, Switches};
+use super::snapshot::ModelInfo;
+use super::switches::{Reach, Switches, checked_alpha};
 use crate::modality::Expert;
 use crate::model::trace::Alphas;
-
-/// Larger than any tempering that means something; keeps precisions finite.
-const LARGEST_ALPHA: f32 = 1000.0;
 
 /// A line that says why not.
 pub type Refusal = String;
@@ -132,84 +129,24 @@ pub fn temper(
     alpha: f32,
 ) -> Result<String, Refusal> {
     let expert = factor_at(model, position)?;
-    if !(0.0..=LARGEST_ALPHA).contains(&alpha) {
-        return Err(format!(
-            "α is a number from 0 to {LARGEST_ALPHA}, not {alpha}"
-        ));
-    }
+    let alpha = checked_alpha(alpha)?;
     change(model, switches, place, &[(expert, alpha)])?;
     Ok(format!("{} α {alpha} {}", expert.name(), place.words()))
 }
 
-/// Whether the model was trained on the switches at a step.
-pub fn badge(model: &ModelInfo, switches: &Switches, step: usize) -> Badge {
-    if !model.has_product() {
-        return Badge::NoProduct;
-    }
-    if let Some((expert, alpha)) = model
-        .factors()
-        .into_iter()
-        .map(|expert| (expert, switches.alpha(expert, step)))
-        .find(|&(_, alpha)| alpha != 0.0 && alpha != 1.0)
-    {
-        return Badge::Untrained(format!("{} α {alpha}", expert.name()));
-    }
-    if model.prior_expert && switches.alpha(Expert::Prior, step) == 0.0 {
-        return Badge::Untrained("prior off".to_owned());
-    }
-    let is_active = |i: usize| {
-        model
-            .experts
-            .get(i)
-            .is_some_and(|&e| switches.alpha(e, step) > 0.0)
-    };
-    let matches = |member: &dyn Fn(usize) -> bool| {
-        (0..model.experts.len()).all(|i| member(i) == is_active(i))
-    };
-    if model
-        .trained_sets
-        .iter()
-        .any(|set| matches(&|i| set.contains(i)))
-    {
-        return Badge::Trained;
-    }
-    Badge::Untrained(format!(
-        "{} never trained; trained: {}",
-        set_name(model, &is_active),
-        trained_names(model)
-    ))
-}
-
-/// What the model was trained on, in a few words.
-fn trained_names(model: &ModelInfo) -> String {
-    match model.trained_sets.len() {
-        0 => "none".to_owned(),
-        count @ 1..=3 => {
-            let sets = &model.trained_sets[..count];
-            let names: Vec<String> = sets
-                .iter()
-                .map(|set| set_name(model, &|i| set.contains(i)))
-                .collect();
-            names.join(", ")
-        }
-        count => format!("{count} sets"),
-    }
-}
-
-fn set_name(model: &ModelInfo, is_member: &dyn Fn(usize) -> bool) -> String {
-    let members = model
-        .experts
-        .iter()
-        .enumerate()
-        .filter(|&(i, _)| is_member(i));
-    let letters: Vec<String> = members
-        .map(|(_, expert)| expert.letter().to_string())
-        .collect();
-    if letters.is_empty() {
-        "prior alone".to_owned()
-    } else {
-        letters.join("+")
-    }
+/// Tempers an expert by so many tenths more or less than under the cursor. Whole tenths, so that down and up again
+/// comes back to exactly 1.
+pub fn temper_by(
+    model: &ModelInfo,
+    switches: &mut Switches,
+    place: Place,
+    position: usize,
+    tenths: i64,
+) -> Result<String, Refusal> {
+    let expert = factor_at(model, position)?;
+    let now = (switches.alpha(expert, place.step) * 10.0).round() as i64;
+    let tenths = now.saturating_add(tenths).max(0);
+    temper(model, switches, place, position, tenths as f32 / 10.0)
 }
 
 fn factor_at(model: &ModelInfo, position: usize) -> Result<Expert, Refusal> {
@@ -322,27 +259,8 @@ mod tests {
     }
 
     #[test]
-    fn the_badge_says_what_was_trained() {
-        let (model, mut switches) = (vhp(), Switches::default());
-        assert_eq!(badge(&model, &switches, 3), Badge::Trained);
-        toggle(&model, &mut switches, EVERYWHERE, 0).unwrap();
-        let untrained = |why: &str| Badge::Untrained(why.to_owned());
-        assert_eq!(
-            badge(&model, &switches, 3),
-            untrained("J never trained; trained: V+J")
-        );
-        toggle(&model, &mut switches, EVERYWHERE, 0).unwrap();
-        temper(&model, &mut switches, EVERYWHERE, 1, 0.5).unwrap();
-        assert_eq!(badge(&model, &switches, 3), untrained("joint α 0.5"));
-        temper(&model, &mut switches, EVERYWHERE, 1, 1.0).unwrap();
-        toggle(&model, &mut switches, EVERYWHERE, 2).unwrap();
-        assert_eq!(badge(&model, &switches, 3), untrained("prior off"));
-    }
-
-    #[test]
     fn a_model_without_a_product_says_so() {
         let (v, mut switches) = (model(&[Expert::Vision], false, &[1]), Switches::default());
-        assert_eq!(badge(&v, &switches, 0), Badge::NoProduct);
         for refusal in [
             toggle(&v, &mut switches, EVERYWHERE, 0),
             solo(&v, &mut switches, EVERYWHERE, 0),

@@ -19,7 +19,7 @@ impl Session {
             Command::TogglePlay => self.playback.toggle(steps),
             Command::Step(by) => self.playback.step(by, steps),
             Command::SeekTo(step) if (1..=steps).contains(&step) => {
-                self.playback.seek(step - 1, steps)
+                self.playback.seek(step - 1, steps);
             }
             Command::SeekTo(step) => self.complain(format!("step {step} is outside 1 to {steps}")),
             Command::SeekClamped(step) => self.playback.seek(step, steps),
@@ -41,6 +41,11 @@ impl Session {
             Command::SetAlpha { expert, alpha } => {
                 self.switch(|model, switches, place| {
                     fusing::temper(model, switches, place, expert, alpha)
+                });
+            }
+            Command::Temper { expert, tenths } => {
+                self.switch(|model, switches, place| {
+                    fusing::temper_by(model, switches, place, expert, tenths)
                 });
             }
             Command::AllOn => self.change(|session| {

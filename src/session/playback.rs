@@ -42,7 +42,8 @@ impl Playback {
 
     /// Takes over a speed if it is one of the powers of two that there are.
     pub fn set_speed(&mut self, speed: f32) -> bool {
-        let found = (-SPEED_LIMIT..=SPEED_LIMIT).find(|&e| 2.0_f32.powi(e as i32) == speed);
+        let found = (-SPEED_LIMIT..=SPEED_LIMIT)
+            .find(|&e| 2.0_f32.powi(e as i32).total_cmp(&speed).is_eq());
         self.exponent = found.unwrap_or(self.exponent);
         found.is_some()
     }
@@ -170,7 +171,7 @@ mod tests {
     #[test]
     fn a_stall_does_not_jump_and_a_pause_does_not_move() {
         let mut playback = playing(Looping::All);
-        playback.update(Duration::from_secs(3600), &SECS);
+        playback.update(Duration::from_hours(1), &SECS);
         assert_eq!(playback.cursor, 2);
         playback.playing = false;
         assert!(!playback.update(Duration::from_secs(1), &SECS));

@@ -23,7 +23,6 @@ pub fn action(line: &str, snapshot: &Snapshot) -> Action {
         "keys" => return Action::Face(FaceCommand::Help),
         "episode" => number()
             .and_then(|n| n.checked_sub(1))
-            .or_else(|| None)
             .map(Command::SelectEpisode),
         "model" => number()
             .and_then(|n| n.checked_sub(1))

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::Session;
-use super::fusing::badge;
+use super::badge::badge;
 use super::settings::{Rollout, Settings};
 use super::snapshot::{
     Badge, ErrorOf, Estimate, ExpertView, FrameRow, LatentView, Message, ModelInfo, PositionView,
@@ -64,14 +64,21 @@ impl Session {
             psnr_db: answer
                 .map(|answer| Arc::clone(&answer.psnr_db))
                 .unwrap_or_default(),
-            message: self
-                .message
-                .clone()
-                .or(fault.map(|text| Message { error: true, text })),
+            message: self.line(fault),
             busy: self.is_busy(),
             state: self.state().to_string(),
             ..empty(self.source.as_ref(), &[])
         }
+    }
+
+    /// A refusal first, for it answers the last key; then what went wrong; then what went well.
+    fn line(&self, fault: Option<String>) -> Option<Message> {
+        let fault = fault.map(|text| Message { error: true, text });
+        let (refusal, other) = match self.message.clone() {
+            Some(message) if message.error => (Some(message), None),
+            other => (None, other),
+        };
+        refusal.or(fault).or(other)
     }
 
     fn expert_views(&self, inferred: Option<&Inferred>) -> Vec<ExpertView> {
@@ -100,10 +107,10 @@ impl Session {
             ExpertView {
                 expert,
                 alpha: model.alpha(&self.settings.switches, expert, step),
-                latent: at_cursor.and_then(|(inferred, belief)| {
+                latent: at_cursor.map(|(inferred, belief)| {
                     let sensors = inferred.trace.experts.get(i);
                     let gaussians = sensors.unwrap_or(&inferred.beliefs.prior);
-                    Some(latent_view(gaussians.row(belief)))
+                    latent_view(gaussians.row(belief))
                 }),
                 share_mean: mean_share(&share),
                 share,

@@ -7,10 +7,10 @@
 //! from there on; what is not mentioned is as trained. `%`, `;` and white space in names are written as `%xx`.
 //! Keys that are not known are kept and written back.
 
-use std::fmt;
+use std::fmt::{self, Write};
 
 use super::command::{Looping, Scope};
-use super::switches::{Reach, Run, Switches};
+use super::switches::{Reach, Run, Switches, checked_alpha};
 use crate::modality::Expert;
 
 /// The version written, and the only one that can be read.
@@ -79,11 +79,8 @@ impl State {
             "horizon" => self.horizon = Some(count(value)?),
             "scope" => self.scope = Some(one_of(value, &SCOPES)?),
             "speed" => {
-                self.speed = Some(
-                    value
-                        .parse()
-                        .map_err(|_| format!("{value:?} is not a number"))?,
-                )
+                let speed = value.parse();
+                self.speed = Some(speed.map_err(|_| format!("{value:?} is not a number"))?);
             }
             "loop" => self.looping = Some(one_of(value, &LOOPINGS)?),
             "alpha" => self.switches = switches(value)?,
@@ -199,10 +196,7 @@ fn run(text: &str) -> Option<(Expert, Run)> {
     let (alpha, steps) = rest
         .split_once('@')
         .map_or((rest, None), |(alpha, steps)| (alpha, Some(steps)));
-    let alpha: f32 = alpha
-        .parse()
-        .ok()
-        .filter(|alpha: &f32| alpha.is_finite() && *alpha >= 0.0)?;
+    let alpha = checked_alpha(alpha.parse().ok()?).ok()?;
     let reach = match steps.map(|steps| {
         steps
             .split_once('-')
@@ -236,7 +230,8 @@ fn escape(text: &str) -> String {
     for c in text.chars() {
         if matches!(c, '%' | ';') || c.is_whitespace() || c.is_control() {
             for byte in c.to_string().bytes() {
-                escaped.push_str(&format!("%{byte:02x}"));
+                // Writing to a string cannot fail.
+                let _ = write!(escaped, "%{byte:02x}");
             }
         } else {
             escaped.push(c);
@@ -262,6 +257,7 @@ fn unescape(text: &str) -> String {
 }
 
 #[cfg(test)]
+#[expect(clippy::float_cmp, reason = "α is compared as it was set")]
 mod tests {
     use proptest::prelude::*;
 

@@ -8,8 +8,20 @@ use std::collections::BTreeMap;
 use super::command::Scope;
 use crate::modality::Expert;
 
-/// α as trained.
+/// α as trained. Values are compared as they were set; none is computed.
 const TRAINED: f32 = 1.0;
+/// The weakest and the strongest tempering; wider than means anything, and all precisions stay finite.
+const TEMPERINGS: std::ops::RangeInclusive<f32> = 0.001..=1000.0;
+
+/// Takes α as a user gives it: off, or within bounds.
+pub fn checked_alpha(alpha: f32) -> Result<f32, String> {
+    let alpha = if alpha == 0.0 { 0.0 } else { alpha };
+    if alpha == 0.0 || TEMPERINGS.contains(&alpha) {
+        return Ok(alpha);
+    }
+    let (least, most) = (TEMPERINGS.start(), TEMPERINGS.end());
+    Err(format!("α is 0, or from {least} to {most}, not {alpha}"))
+}
 
 /// The steps a change reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,7 +95,7 @@ impl Switches {
         starts.push((reach.from, alpha));
         starts.extend(after);
         starts.sort_by_key(|&(start, _)| start);
-        starts.dedup_by(|later, earlier| later.1 == earlier.1);
+        starts.dedup_by(|later, earlier| later.1.total_cmp(&earlier.1).is_eq());
         if *starts == [(0, TRAINED)] {
             self.starts.remove(&expert);
         }
@@ -102,7 +114,7 @@ impl Switches {
         starts
             .iter()
             .zip(ends)
-            .filter(|((_, alpha), _)| *alpha != TRAINED)
+            .filter(|((_, alpha), _)| alpha.total_cmp(&TRAINED).is_ne())
             .map(|(&(from, alpha), until)| Run {
                 reach: Reach { from, until },
                 alpha,

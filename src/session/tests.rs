@@ -1,5 +1,9 @@
 //! Scripts of commands, then a look at the snapshot.
-#![expect(clippy::unwrap_used, reason = "a test may stop here")]
+#![expect(
+    clippy::unwrap_used,
+    clippy::float_cmp,
+    reason = "a test may stop here; α is compared as it was set"
+)]
 
 mod faults;
 mod random;
@@ -270,4 +274,15 @@ fn a_session_without_models_still_shows_the_recording() {
         [Step(1), Last, TogglePlay, Episode(1), ToggleExpert(0)],
     );
     assert!(snapshot.episode.is_none() && is_refusal(&snapshot));
+}
+
+#[test]
+fn an_episode_can_be_too_short_to_predict_anything() {
+    let source = Arc::new(FakeSource::with_steps(1, 2));
+    let mut session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    let snapshot = run(&mut session, [Last]);
+    assert_eq!((snapshot.start, snapshot.horizon), (1, 0));
+    assert!(snapshot.frames.belief.is_some() && snapshot.frames.prediction.is_none());
+    assert!(is_refusal(&run(&mut session, [PredictHere])));
+    assert_eq!(run(&mut session, [Context(5), Horizon(-2)]).horizon, 0);
 }

@@ -20,11 +20,10 @@ use memo::{BeliefKey, Memo};
 pub use memo::{Inferred, Target};
 pub use opened::Opened;
 
-use super::fusing::Refusal;
 use super::predict::{PredictError, Predictor};
 use super::settings::{Rollout, Settings};
 use super::snapshot::{Estimate, StepPsnr, StripCell};
-use crate::episode::{EpisodeSource, Layout};
+use crate::episode::{EpisodeSource, Layout, SourceError};
 
 /// Name of the thread, for those who look at threads; a panic on it is caught and told as a message.
 pub const THREAD: &str = "poescope-session";
@@ -57,8 +56,6 @@ pub struct Answer {
     pub inferred: Option<Arc<Inferred>>,
     /// Positions at each step from the beliefs; none without a probe.
     pub belief_positions: Option<Arc<Vec<Option<Estimate>>>>,
-    /// The steps that were rolled out.
-    pub rollout: Option<Rollout>,
     /// Positions at each step from the rollout; none without a probe.
     pub rollout_positions: Option<Arc<Vec<Option<Estimate>>>>,
     /// The frames of each step.
@@ -79,7 +76,6 @@ impl Answer {
             opened: None,
             inferred: None,
             belief_positions: None,
-            rollout: None,
             rollout_positions: None,
             strip: Arc::default(),
             psnr_db: Arc::default(),
@@ -132,9 +128,9 @@ enum Stop {
     Fault(String),
 }
 
-impl From<Refusal> for Stop {
-    fn from(why: Refusal) -> Self {
-        Self::Fault(why)
+impl From<SourceError> for Stop {
+    fn from(error: SourceError) -> Self {
+        Self::Fault(error.to_string())
     }
 }
 
@@ -255,7 +251,6 @@ impl Worker {
                     psnr_db[step].prediction = pictured.psnr_db(step);
                 }
                 left.extend(pictured.undecoded());
-                answer.rollout = Some(rollout);
                 answer.rollout_positions.clone_from(&pictured.positions);
             }
             answer.strip = Arc::new(cells);

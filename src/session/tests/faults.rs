@@ -37,6 +37,8 @@ struct Awkward {
     inner: FakePredictor,
     door: Arc<Door>,
     missing: Vec<String>,
+    /// How many latents each call decoded.
+    decoded: Arc<Mutex<Vec<usize>>>,
 }
 
 impl Predictor for Awkward {
@@ -67,6 +69,7 @@ impl Predictor for Awkward {
         self.inner.rollout(t, b, from, h)
     }
     fn decode(&self, latents: &[f32]) -> Result<Vec<Frame>, PredictError> {
+        self.decoded.lock().unwrap().push(latents.len() / 4);
         self.inner.decode(latents)
     }
     fn position(&self, _: &[f32], _: &[f32]) -> Option<Estimate> {
@@ -78,13 +81,20 @@ impl Predictor for Awkward {
 }
 
 fn awkward(missing: &[&str]) -> (Session, Arc<Door>) {
+    let (session, door, _) = logged(missing);
+    (session, door)
+}
+
+fn logged(missing: &[&str]) -> (Session, Arc<Door>, Arc<Mutex<Vec<usize>>>) {
+    let decoded = Arc::default();
     let door = Arc::new(Door::default());
     let model = Awkward {
         inner: FakePredictor::three(),
         door: Arc::clone(&door),
         missing: missing.iter().map(|&role| role.to_owned()).collect(),
+        decoded: Arc::clone(&decoded),
     };
-    (session_of(vec![Box::new(model)]), door)
+    (session_of(vec![Box::new(model)]), door, decoded)
 }
 
 #[test]
@@ -93,16 +103,7 @@ fn a_panic_is_told_and_the_session_lives_on() {
     let broken = run(&mut session, [SeekTo(4), ToggleExpert(1)]);
     assert!(!broken.busy && broken.frames.truth.is_some());
     assert_eq!(broken.experts[1].alpha, 0.0);
-    session.say(Message {
-        error: false,
-        text: String::new(),
-    });
-    session.message = None;
-    session.refresh();
-    assert_eq!(
-        text(&session.snapshot()),
-        "the model broke down: haptic is off"
-    );
+    assert_eq!(text(&broken), "the model broke down: haptic is off");
     let mended = run(&mut session, [ToggleExpert(1)]);
     assert!(mended.frames.belief.is_some());
 }
@@ -158,6 +159,26 @@ fn only_the_newest_request_is_answered() {
         door.waiting.load(Ordering::SeqCst) <= before + 3,
         "held keys leave no backlog"
     );
+}
+
+#[test]
+fn what_is_under_the_cursor_is_decoded_first() {
+    let (mut session, _, decoded) = logged(&[]);
+    run(&mut session, [SeekTo(8)]);
+    decoded.lock().unwrap().clear();
+    run(&mut session, [ToggleExpert(0)]);
+    let sizes = decoded.lock().unwrap().clone();
+    assert_eq!(
+        sizes[..2],
+        [1, 1],
+        "the belief and the prediction at the cursor"
+    );
+    assert_eq!(
+        sizes.iter().sum::<usize>(),
+        15 + 11,
+        "then each other step once"
+    );
+    assert!(sizes.iter().all(|&size| size <= 4));
 }
 
 #[test]

@@ -8,11 +8,10 @@ use std::sync::Arc;
 use super::lru::Lru;
 use super::opened::Opened;
 use super::pictured::Pictured;
-use crate::episode::{Episode, EpisodeSource, Layout};
+use crate::episode::{Episode, EpisodeSource, Layout, SourceError};
 use crate::measure::fusion::{mean_share, precision_shares};
 use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace};
-use crate::session::fusing::Refusal;
-use crate::session::predict::Predictor;
+use crate::session::predict::{PredictError, Predictor};
 use crate::session::settings::Rollout;
 
 /// Episodes and encodings kept.
@@ -105,14 +104,9 @@ impl Memo {
         source: &dyn EpisodeSource,
         index: usize,
         layout: Layout,
-    ) -> Result<Arc<Episode>, Refusal> {
+    ) -> Result<Arc<Episode>, SourceError> {
         let key = (index, layout);
-        let load = || {
-            source
-                .load(index, layout)
-                .map(Arc::new)
-                .map_err(|error| error.to_string())
-        };
+        let load = || source.load(index, layout).map(Arc::new);
         self.episodes
             .get_or_try_insert(key, load)
             .map(|episode| Arc::clone(episode))
@@ -139,13 +133,8 @@ impl Memo {
         target: Target,
         episode: &Episode,
         predictor: &dyn Predictor,
-    ) -> Result<Arc<ExpertTrace>, Refusal> {
-        let encode = || {
-            predictor
-                .encode(episode)
-                .map(Arc::new)
-                .map_err(|error| error.to_string())
-        };
+    ) -> Result<Arc<ExpertTrace>, PredictError> {
+        let encode = || predictor.encode(episode).map(Arc::new);
         self.traces
             .get_or_try_insert(target, encode)
             .map(|trace| Arc::clone(trace))
@@ -164,7 +153,7 @@ impl Memo {
         alphas: Alphas,
         steps: usize,
         predictor: &dyn Predictor,
-    ) -> Result<BeliefKey, Refusal> {
+    ) -> Result<BeliefKey, PredictError> {
         let key = BeliefKey {
             target,
             alpha_bits: alphas.values.iter().map(|alpha| alpha.to_bits()).collect(),
@@ -179,14 +168,17 @@ impl Memo {
         self.beliefs.get(key)
     }
 
-    /// Rolls out from these beliefs.
+    /// Rolls out from these beliefs, where there is a step to predict.
     pub fn roll_out(
         &mut self,
         key: &BeliefKey,
         rollout: Rollout,
         steps: usize,
         predictor: &dyn Predictor,
-    ) -> Result<(), Refusal> {
+    ) -> Result<(), PredictError> {
+        if rollout.horizon == 0 {
+            return Ok(());
+        }
         let Some(inferred) = self
             .beliefs
             .get(key)
@@ -199,7 +191,6 @@ impl Memo {
             predictor
                 .rollout(&inferred.trace, &inferred.beliefs, from, rollout.horizon)
                 .map(|trace| Pictured::new(predictor, trace, rollout.start + 1, steps))
-                .map_err(|error| error.to_string())
         };
         self.rollouts
             .get_or_try_insert((key.clone(), rollout), roll)?;
@@ -217,16 +208,14 @@ fn infer(
     alphas: Alphas,
     steps: usize,
     predictor: &dyn Predictor,
-) -> Result<Believed, Refusal> {
-    let beliefs = predictor
-        .filter(&trace, &alphas)
-        .map_err(|error| error.to_string())?;
+) -> Result<Believed, PredictError> {
+    let beliefs = predictor.filter(&trace, &alphas)?;
     let (info, count) = (predictor.info(), beliefs.posterior.len());
     if count + info.frame_stack != steps || beliefs.prior.len() != count {
-        return Err(format!(
+        return Err(PredictError(format!(
             "{} made {count} beliefs for {steps} steps",
             info.name
-        ));
+        )));
     }
     let mut inferred = Inferred {
         share_over_time: Vec::new(),
