@@ -86,9 +86,9 @@ impl Dataset {
             [file] => file.index.hash.clone(),
             files => {
                 let mut hash = Fnv::new();
-                files
-                    .iter()
-                    .for_each(|file| hash.update(file.index.hash.as_bytes()));
+                for file in files {
+                    hash.update(file.index.hash.as_bytes());
+                }
                 hash.hex()
             }
         };

@@ -3,4 +3,5 @@
 mod align;
 mod damage;
 mod data;
+mod info;
 mod opening;
