@@ -12,10 +12,10 @@ use crate::episode::{Episode, Flag, Frame, Layout, PlanarPose, Recording, Track}
 
 /// Lays `recording` out in `layout`.
 ///
-/// Step t is the t-th image in time, at τ_t; of two with one stamp the first counts. Sample k = 1…W of its window lies
-/// at τ_{t-1} + k (τ_t − τ_{t-1}) / W, linear between recorded samples, a recorded one within 1 µs taken as it is, the
+/// Step t is the t-th image in time, at `τ_t`; of two with one stamp the first counts. Sample k = 1…W of its window lies
+/// at `τ_{t-1} + k (τ_t − τ_{t-1}) / W`, linear between recorded samples, a recorded one within 1 µs taken as it is, the
 /// first and last held beyond the ends. Before the first image lies a window as long as the one after it. Controls
-/// are means over [τ_t, τ_{t+1}) of the held command. A role that was not recorded is none; proprio needs both
+/// are means over `[τ_t, τ_{t+1})` of the held command. A role that was not recorded is none; proprio needs both
 /// position and velocity. Gaps and stamps that run backwards are flagged, on the format's default topics.
 ///
 /// # Errors

@@ -54,6 +54,8 @@ impl BlockCache {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
     use super::*;
 
     #[test]

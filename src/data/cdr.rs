@@ -183,6 +183,7 @@ pub(super) struct CompressedImage<'a> {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
     #![expect(clippy::float_cmp, reason = "nothing is computed on the way")]
 
     use super::*;

@@ -125,3 +125,51 @@ fn track<const N: usize>(rows: Vec<Row<[f64; N]>>) -> Track<N> {
         values,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+    use std::io::Cursor;
+
+    use super::super::cdr::{Header, encode};
+    use super::*;
+
+    #[test]
+    fn pictures_and_points_are_read_and_a_zero_stamp_is_the_log_time() {
+        let mut png = Cursor::new(Vec::new());
+        let picture = image::GrayImage::from_raw(2, 1, vec![7, 250]).unwrap();
+        picture.write_to(&mut png, image::ImageFormat::Png).unwrap();
+        let mut payload = Vec::new();
+        let mut collector = Collector::default();
+
+        let unstamped = Header::new(0, "camera").unwrap();
+        let compressed = (unstamped, "png", serde_bytes::Bytes::new(png.get_ref()));
+        encode(&compressed, &mut payload).unwrap();
+        let camera = Stream {
+            role: Role::Vision,
+            ty: MessageType::CompressedImage,
+        };
+        collector.push(camera, 40, &payload).unwrap();
+
+        let control = Stream {
+            role: Role::Control,
+            ty: MessageType::Point,
+        };
+        // Logged late: log order, not file order.
+        for (log, x) in [(60, 2.0), (50, 1.0)] {
+            let point = Stamped {
+                header: Header::new(x as i64, "base_link").unwrap(),
+                value: Vector3::new([x, -x, 9.0]),
+            };
+            encode(&point, &mut payload).unwrap();
+            collector.push(control, log, &payload).unwrap();
+        }
+
+        let recording = collector.finish(EpisodeMeta::default());
+        assert_eq!(recording.frame_stamps_nanos, [40]);
+        assert_eq!(recording.frames[0].pixels, [7, 250]);
+        assert_eq!(recording.control.stamps_nanos, [1, 2]);
+        assert_eq!(recording.control.values, [[1.0, -1.0], [2.0, -2.0]]);
+    }
+}

@@ -86,9 +86,9 @@ impl Dataset {
             [file] => file.index.hash.clone(),
             files => {
                 let mut hash = Fnv::new();
-                files
-                    .iter()
-                    .for_each(|file| hash.update(file.index.hash.as_bytes()));
+                for file in files {
+                    hash.update(file.index.hash.as_bytes());
+                }
                 hash.hex()
             }
         };
@@ -192,7 +192,8 @@ impl Dataset {
         splits(&self.metas, seed)
     }
 
-    /// The split of one episode, as [`Dataset::splits`] says; none if there is no such episode.
+    /// The split of one episode, as [`Dataset::splits`] says, which is the one to call for many of them; none if there
+    /// is no such episode.
     pub fn split_of(&self, index: usize, seed: u64) -> Option<Split> {
         self.splits(seed).get(index).copied()
     }

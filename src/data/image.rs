@@ -107,6 +107,8 @@ fn high(value: u16) -> u8 {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
     use super::*;
 
     fn raw<'a>(encoding: &'a str, step: u32, data: &'a [u8]) -> cdr::Image<'a> {

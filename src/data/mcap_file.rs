@@ -57,7 +57,7 @@ impl McapFile {
             number,
             path: path.to_owned(),
             index,
-            streams: found.streams,
+            streams: found.readable,
             left_out: found.left_out,
         })
     }

@@ -124,6 +124,8 @@ fn resolve<'a>(
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
     use super::*;
 
     const EVERY: [MessageType; 6] = [

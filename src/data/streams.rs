@@ -11,7 +11,7 @@ use super::topics::{Role, Topics};
 
 /// The channels of a file, sorted out.
 pub(super) struct Streams {
-    pub(super) streams: BTreeMap<u16, Stream>,
+    pub(super) readable: BTreeMap<u16, Stream>,
     pub(super) left_out: Vec<LeftOut>,
     pub(super) notes: Vec<String>,
 }
@@ -19,7 +19,7 @@ pub(super) struct Streams {
 /// Sorts out the channels of `index`.
 pub(super) fn find(index: &Index, topics: &Topics) -> Streams {
     let mut found = Streams {
-        streams: BTreeMap::new(),
+        readable: BTreeMap::new(),
         left_out: Vec::new(),
         notes: Vec::new(),
     };
@@ -30,7 +30,7 @@ pub(super) fn find(index: &Index, topics: &Topics) -> Streams {
         };
         match read {
             Ok(stream) => {
-                found.streams.insert(id, stream);
+                found.readable.insert(id, stream);
             }
             Err(why) => found.left_out.push(LeftOut {
                 what: channel.topic.clone(),

@@ -45,7 +45,7 @@ impl DatasetWriter {
             .unwrap_or(path.as_os_str())
             .to_string_lossy();
         let temporary = path.with_file_name(format!(".{name}.{}.partial", std::process::id()));
-        let file = File::create(&temporary).map_err(DataError::io(&temporary))?;
+        let file = File::create(&temporary).map_err(DataError::io(path))?;
         // One thread, so that the bytes depend on nothing but the data.
         let writer = WriteOptions::new()
             .profile("ros2")

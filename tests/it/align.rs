@@ -136,10 +136,10 @@ proptest! {
         let controls = episode.controls.unwrap();
         prop_assert_eq!(controls.len(), steps.len() - 1);
         for (t, u) in controls.iter().enumerate() {
-            for n in 0..2 {
+            for (n, &u) in u.iter().enumerate() {
                 let mean = reference_control(&recording.control, steps[t], steps[t + 1], n);
                 // A command within 1 µs of an end is taken to lie on it.
-                prop_assert!((f64::from(u[n]) - mean).abs() < 1e-4, "{} {}", u[n], mean);
+                prop_assert!((f64::from(u) - mean).abs() < 1e-4, "{} {}", u, mean);
             }
         }
     }
@@ -156,7 +156,9 @@ proptest! {
             &mut shifted.object.stamps_nanos,
         ];
         for stamps in tracks {
-            stamps.iter_mut().for_each(|stamp| *stamp += shift);
+            for stamp in stamps {
+                *stamp += shift;
+            }
         }
         let [a, mut b] = [align(&recording, LAYOUT).unwrap(), align(&shifted, LAYOUT).unwrap()];
         b.steps_nanos.iter_mut().for_each(|stamp| *stamp -= shift);

@@ -6,4 +6,5 @@ mod architecture;
 mod damage;
 mod data;
 mod golden;
+mod info;
 mod opening;

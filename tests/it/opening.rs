@@ -162,11 +162,13 @@ fn with_schemas(path: &Path, change: impl Fn(&mut (String, String, Vec<u8>))) {
     writer.finish().unwrap();
 }
 
+/// A change of a schema's name, encoding, text.
+type Change = fn(&mut (String, String, Vec<u8>));
+
 #[test]
 fn a_topic_that_cannot_be_read_is_left_out_and_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.mcap");
-    type Change = fn(&mut (String, String, Vec<u8>));
     let changes: [(Change, &str); 3] = [
         (
             |schema| schema.0 = "my_msgs/msg/Force".to_owned(),

@@ -45,17 +45,20 @@ impl Lines {
 
     /// Adds `items`, only the ends of a long list.
     fn ends(&mut self, items: &[String]) {
-        if items.len() <= SHOWN {
-            items.iter().for_each(|item| self.add(item));
-            return;
+        let hidden = if items.len() <= SHOWN {
+            0..0
+        } else {
+            SHOWN / 2..items.len() - 1
+        };
+        for (i, item) in items.iter().enumerate() {
+            if i == hidden.start && !hidden.is_empty() {
+                let more = hidden.len();
+                self.add(format!("  … {more} more (--json lists all)"));
+            }
+            if !hidden.contains(&i) {
+                self.add(item);
+            }
         }
-        let (head, tail) = (SHOWN / 2, 1);
-        items[..head].iter().for_each(|item| self.add(item));
-        let hidden = items.len() - head - tail;
-        self.add(format!("  … {hidden} more (--json lists all)"));
-        items[items.len() - tail..]
-            .iter()
-            .for_each(|item| self.add(item));
     }
 
     fn episodes(&mut self, episodes: &[EpisodeInfo]) {
