@@ -13,17 +13,20 @@
 //!                   share ▓▓▓▓▒▒▒▒░░░░
 //! status::message   message, prompt, warning or a few keys
 //! ```
-//! One file a pane; [`layout`] says where each stands, [`face`] holds what only this face knows, [`print`] writes
-//! a frame as text.
+//! One file a pane; [`layout`] says where each stands, [`face`] holds what only this face knows, [`app`] turns keys
+//! and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text.
 
+pub mod app;
 pub mod face;
 pub mod layout;
 pub mod pixels;
+pub mod terminal;
 pub mod theme;
 
 mod braille;
 mod experts;
 mod frames;
+mod help;
 mod image;
 mod latents;
 mod paint;
@@ -84,7 +87,10 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
     if shown(panes.timeline) {
         timeline::draw(buf, panes.timeline, snapshot, face);
     }
-    status::message(buf, panes.message, snapshot, face, HINT);
+    status::message(buf, panes.message, snapshot, face);
+    if let Some(page) = face.help {
+        help::draw(buf, screen, page);
+    }
 }
 
 /// Where the panes are on a screen of this size.
@@ -96,6 +102,3 @@ fn panes(screen: Rect, snapshot: &Snapshot, face: &Face) -> Panes {
     let zoom = face.zoomed.then_some(face.focus);
     Panes::of(screen, steps, snapshot.experts.len(), zoom)
 }
-
-const HINT: &str =
-    "space play  ←→ step  [ ] episode  1…9 switch  s scope  p predict  ⏎ zoom  ? keys  q quit";

@@ -30,7 +30,8 @@ impl Focus {
     ];
 
     /// The pane so many places on, round and round.
-    pub fn next(self, by: i64) -> Self {
+    #[must_use]
+    pub fn turned(self, by: i64) -> Self {
         let at = Self::ALL.iter().position(|&pane| pane == self).unwrap_or(0) as i64;
         let count = Self::ALL.len() as i64;
         Self::ALL[(at + by).rem_euclid(count) as usize]
@@ -44,14 +45,12 @@ pub struct Face {
     pub focus: Focus,
     /// Whether that pane fills the screen.
     pub zoomed: bool,
-    /// Whether the keys are shown over the screen.
-    pub help: bool,
+    /// Page of the keys that is shown over the screen.
+    pub help: Option<usize>,
     /// What is being typed, with what stands before it; none when nothing is.
     pub prompt: Option<String>,
     /// The expert whose Gaussian is shown beside the belief, by its place in the list.
     pub expert: usize,
-    /// The face's own last word, before the session's.
-    pub notice: Option<String>,
     /// Colours of the terminal.
     pub depth: Depth,
     /// The terminal's own images, where it has them.

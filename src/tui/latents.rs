@@ -112,7 +112,7 @@ struct Axis {
 
 impl Axis {
     fn at(&self, value: f32) -> u16 {
-        let part = ((value / self.reach).clamp(-1.0, 1.0) + 1.0) / 2.0;
+        let part = f32::midpoint((value / self.reach).clamp(-1.0, 1.0), 1.0);
         self.from + (part * f32::from(self.columns - 1)).round() as u16
     }
 

@@ -18,12 +18,11 @@ use super::braille::{Canvas, Stroke};
 use super::face::{Face, Focus};
 use super::paint::{below_title, put, right, text, title};
 use super::theme::{PREDICTION, dim, strong};
+use crate::measure::ellipse::{Ellipse, ONE_SIGMA_MASS, SIGMAS_OF_95_PERCENT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 
 /// Columns of the numbers on the y axis.
 const GUTTER: u16 = 4;
-/// Standard deviations at which a Gaussian in the plane holds 95 % (√χ²₂; 1σ holds 39.3 %).
-const SIGMAS_95: f32 = 2.4477;
 
 /// Draws the plane with its legend.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -71,7 +70,8 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         at = text(buf, inner, at + gap, row, "─ belief", dim());
         at = text(buf, inner, at + gap, row, prediction, dim().patch(ink));
         text(buf, inner, at + gap, row, "+ tip", dim());
-        text(buf, inner, 0, row + 1, "1σ solid 39 %, 95 % dotted", dim());
+        let masses = format!("1σ solid {:.0} %, 95 % dotted", ONE_SIGMA_MASS * 100.0);
+        text(buf, inner, 0, row + 1, &masses, dim());
     }
 }
 
@@ -193,7 +193,11 @@ impl Plane {
         let (belief, prediction) = (at(&position.belief), at(&position.prediction));
         for (estimate, style) in [(prediction, ink), (belief, Style::new())] {
             let Some(estimate) = estimate else { continue };
-            canvas.path(&self.ellipse(&estimate, SIGMAS_95), Stroke::Dotted, style);
+            canvas.path(
+                &self.ellipse(&estimate, SIGMAS_OF_95_PERCENT),
+                Stroke::Dotted,
+                style,
+            );
             canvas.path(&self.ellipse(&estimate, 1.0), Stroke::Solid, style);
         }
         canvas.draw(buf, pane);
@@ -217,45 +221,17 @@ impl Plane {
         }
     }
 
-    /// The ellipse of so many standard deviations, by the Cholesky factor of the covariance.
+    /// The outline of so many standard deviations, closed.
     fn ellipse(&self, estimate: &Estimate, sigmas: f32) -> Vec<(f32, f32)> {
-        const POINTS: u8 = 48;
-        let [xx, xy, yy] = estimate.covariance;
-        let a = xx.max(0.0).sqrt();
-        let b = if a > 0.0 { xy / a } else { 0.0 };
-        let c = (yy - b * b).max(0.0).sqrt();
-        (0..=POINTS)
-            .map(|i| {
-                let angle = f32::from(i) / f32::from(POINTS) * std::f32::consts::TAU;
-                let (sin, cos) = angle.sin_cos();
-                let x = estimate.x + sigmas * a * cos;
-                let y = estimate.y + sigmas * (b * cos + c * sin);
-                self.dot(x, y)
-            })
+        const POINTS: usize = 48;
+        let ellipse = Ellipse::of_covariance(estimate.covariance);
+        let outline = ellipse.outline([estimate.x, estimate.y], sigmas, POINTS);
+        let closing = outline.first().copied();
+        outline
+            .iter()
+            .copied()
+            .chain(closing)
+            .map(|[x, y]| self.dot(x, y))
             .collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_ellipse_reaches_its_standard_deviations() {
-        let plane = Plane {
-            left: 0.0,
-            top: 0.0,
-            cm_per_dot: 1.0,
-            dots: (1.0, 1.0),
-        };
-        let estimate = Estimate {
-            x: 0.0,
-            y: 0.0,
-            covariance: [0.0004, 0.0002, 0.0009],
-        };
-        let points = plane.ellipse(&estimate, 2.0);
-        let reach = |of: fn(&(f32, f32)) -> f32| points.iter().map(of).fold(0.0, f32::max);
-        assert!((reach(|point| point.0) - 4.0).abs() < 0.02);
-        assert!((reach(|point| point.1) - 6.0).abs() < 0.02);
     }
 }

@@ -70,15 +70,13 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 }
 
 /// Draws the last line: what is typed, else the last message, else a warning, else some keys.
-pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, hint: &str) {
+pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let warning = strong().patch(face.depth.ink(WARNING));
     if let Some(prompt) = &face.prompt {
         let at = text(buf, pane, 0, 0, prompt, strong());
-        text(buf, pane, at, 0, "▏", Style::new());
-        return;
-    }
-    if let Some(notice) = &face.notice {
-        text(buf, pane, 0, 0, notice, Style::new());
+        if prompt.starts_with(':') {
+            text(buf, pane, at, 0, "▏", Style::new());
+        }
         return;
     }
     let episode = snapshot.episode.as_deref();
@@ -105,7 +103,30 @@ pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, h
         let at = text(buf, pane, 0, 0, "recording: ", dim());
         text(buf, pane, at, 0, flag, Style::new());
     } else {
-        text(buf, pane, 0, 0, hint, dim());
+        hints(buf, pane);
+    }
+}
+
+/// As many keys as there is room for, the way to all the others always among them.
+fn hints(buf: &mut Buffer, pane: Rect) {
+    const KEYS: [(&str, &str); 9] = [
+        ("?", "keys"),
+        ("space", "play"),
+        ("←→", "step"),
+        ("1…9", "switch"),
+        ("s", "scope"),
+        ("p", "predict here"),
+        ("[ ]", "episode"),
+        ("⏎", "zoom"),
+        ("q", "quit"),
+    ];
+    let mut at = 0;
+    for (key, does) in KEYS {
+        if at + width(key) + 1 + width(does) > pane.width {
+            return;
+        }
+        at = text(buf, pane, at, 0, key, Style::new());
+        at = text(buf, pane, at + 1, 0, does, dim()) + 2;
     }
 }
 
