@@ -167,7 +167,7 @@ impl Panes {
         self.timeline = middle;
         let (upper, lower) = rows(left, experts_rows(experts));
         self.experts = upper;
-        self.shares = rows(lower, 1).1;
+        (self.shares, _) = rows(rows(lower, 1).1, 10);
     }
 }
 

@@ -30,13 +30,14 @@ pub fn right(buf: &mut Buffer, pane: Rect, end: u16, row: u16, content: &str, st
     start
 }
 
-/// Writes one character.
+/// Writes one character in place of what was there.
 pub fn put(buf: &mut Buffer, pane: Rect, column: u16, row: u16, symbol: char, style: Style) {
     let pane = pane.intersection(buf.area);
     if row < pane.height
         && column < pane.width
         && let Some(cell) = buf.cell_mut((pane.x + column, pane.y + row))
     {
+        cell.reset();
         cell.set_char(symbol).set_style(style);
     }
 }

@@ -145,7 +145,8 @@ impl Plane {
     fn axes(&self, buf: &mut Buffer, pane: Rect) {
         let (width, height) = self.dots;
         let rows = (height / 4.0) as u16;
-        let cm = |value: f32| format!("{value:.0}");
+        // Through whole numbers, so that nothing reads -0.
+        let cm = |value: f32| (value.round() as i32).to_string();
         let bottom = self.top - height * self.cm_per_dot;
         right(buf, pane, GUTTER - 1, 0, &cm(self.top), dim());
         right(buf, pane, GUTTER - 1, rows - 1, &cm(bottom), dim());

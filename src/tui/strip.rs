@@ -28,7 +28,7 @@ const SMALLEST: u16 = 10;
 
 /// Side of a frame in columns, and k, for so many columns and rows of screen.
 fn sizes(width: u16, height: u16, steps: usize) -> (u16, usize) {
-    let tallest = height.saturating_sub(1) / 3 * 2;
+    let tallest = height.saturating_sub(3) / 3 * 2;
     let room = usize::from(width.saturating_sub(LABELS));
     let all_at_once = (room / steps.max(1)).saturating_sub(1) as u16;
     let side = if all_at_once >= SMALLEST {
@@ -46,7 +46,7 @@ pub fn rows(width: u16, height: u16, steps: usize) -> u16 {
     if side == 0 {
         0
     } else {
-        1 + 3 * side.div_ceil(2)
+        3 + 3 * side.div_ceil(2)
     }
 }
 
@@ -61,6 +61,8 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     }
     let image_rows = side.div_ceil(2);
+    // A blank row between truth, belief and prediction.
+    let pitch = image_rows + 1;
 
     text(buf, pane, 0, 0, &every_text(every), dim());
     let prediction = strong().patch(face.depth.ink(PREDICTION));
@@ -70,14 +72,14 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         ("prediction", prediction),
     ];
     for (i, (name, style)) in names.into_iter().enumerate() {
-        text(buf, pane, 0, 1 + i as u16 * image_rows, name, style);
+        text(buf, pane, 0, 1 + i as u16 * pitch, name, style);
     }
 
     for (place, step) in (0..steps).step_by(every).enumerate() {
         let at = LABELS + place as u16 * (side + 1);
         heading(buf, pane, at, side, step, snapshot);
         if step <= snapshot.start && step + every > snapshot.start {
-            for row in 0..=3 * image_rows {
+            for row in 0..3 * pitch {
                 put(buf, pane, at + side, row, '│', strong());
             }
         }
@@ -86,7 +88,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
                 let Some(frame) = frame else { continue };
                 let cell_pane = Rect {
                     x: pane.x + at,
-                    y: pane.y + 1 + i as u16 * image_rows,
+                    y: pane.y + 1 + i as u16 * pitch,
                     width: side,
                     height: image_rows,
                 };
@@ -94,7 +96,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             }
         }
     }
-    text(buf, pane, LABELS, 1 + 2 * image_rows, "context", dim());
+    text(buf, pane, LABELS, 1 + 2 * pitch, "context", dim());
 }
 
 fn images(cell: &StripCell) -> [Option<&Arc<Frame>>; 3] {

@@ -15,6 +15,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::face::{Face, Focus};
+use super::layout::rows;
 use super::paint::{column, put, right, text};
 use super::stack::stack;
 use super::theme::{PREDICTION, dim, strong};
@@ -66,27 +67,31 @@ impl Axis {
     }
 }
 
-/// Rows of each part of a timeline.
+/// Rows of each part of a timeline, and the blank ones between them.
+#[derive(Default)]
 struct Parts {
     force: u16,
     share: u16,
     psnr: u16,
+    gap: u16,
 }
 
 impl Parts {
-    /// Divides the rows below header and track.
+    /// Divides the rows below header and track; more than makes a calm picture is left blank.
     fn of(rows: u16) -> Self {
-        let psnr = match rows {
-            0..=4 => 0,
-            5..=10 => 1,
-            _ => 2,
+        let (psnr, gap) = match rows {
+            0..=4 => (0, 0),
+            5..=8 => (1, 0),
+            9..=13 => (1, 1),
+            _ => (2, 1),
         };
-        let rest = rows - 2 * psnr;
-        let force = (rest / 3).max(u16::from(rest > 0));
+        let rest = rows - 2 * psnr - 2 * gap;
+        let force = (rest / 3).max(u16::from(rest > 0)).min(4);
         Self {
             force,
-            share: rest - force,
+            share: (rest - force).min(8),
             psnr,
+            gap,
         }
     }
 }
@@ -104,36 +109,29 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     track(buf, pane, 1, axis, snapshot, face);
 
     let parts = Parts::of(pane.height - 2);
-    let part = |from: u16, height: u16| Rect {
-        y: pane.y + from,
-        height,
-        ..pane
-    };
-    force(buf, part(2, parts.force), axis, snapshot);
-    let from = 2 + parts.force;
-    shares(buf, part(from, parts.share), axis, snapshot, face);
-    if parts.psnr > 0 {
-        let from = from + parts.share;
-        let belief = |psnr: &StepPsnr| psnr.belief;
-        psnr(
-            buf,
-            part(from, parts.psnr),
-            axis,
-            snapshot,
-            ("belief", Style::new()),
-            belief,
-        );
-        let prediction = |psnr: &StepPsnr| psnr.prediction;
-        let ink = face.depth.ink(PREDICTION);
-        psnr(
-            buf,
-            part(from + parts.psnr, parts.psnr),
-            axis,
-            snapshot,
-            ("pred", ink),
-            prediction,
-        );
-    }
+    let (force_rows, rest) = rows(rows(pane, 2).1, parts.force);
+    let (share_rows, rest) = rows(rows(rest, parts.gap).1, parts.share);
+    let (belief_rows, rest) = rows(rows(rest, parts.gap).1, parts.psnr);
+    let (prediction_rows, _) = rows(rest, parts.psnr);
+    force(buf, force_rows, axis, snapshot);
+    shares(buf, share_rows, axis, snapshot, face);
+    let ink = face.depth.ink(PREDICTION);
+    psnr(
+        buf,
+        belief_rows,
+        axis,
+        snapshot,
+        ("belief", Style::new()),
+        |psnr| psnr.belief,
+    );
+    psnr(
+        buf,
+        prediction_rows,
+        axis,
+        snapshot,
+        ("pred", ink),
+        |psnr| psnr.prediction,
+    );
 }
 
 fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -259,7 +257,7 @@ fn force(buf: &mut Buffer, pane: Rect, axis: Axis, snapshot: &Snapshot) {
         .copied()
         .filter(|value| value.is_finite())
         .fold(1e-6, f32::max);
-    bars(buf, pane, axis, Style::new(), |step| {
+    bars(buf, pane, axis, dim(), |step| {
         Some(newtons.get(step)? / most)
     });
     if let Some(now) = newtons.get(snapshot.cursor) {
@@ -315,7 +313,7 @@ fn psnr(
     text(buf, pane, 0, 0, name, dim().patch(style));
     let (low, high) = PSNR_RANGE;
     let value = |step: usize| snapshot.psnr_db.get(step).and_then(&of);
-    bars(buf, pane, axis, style, |step| {
+    bars(buf, pane, axis, dim().patch(style), |step| {
         Some((value(step)? - low) / (high - low))
     });
     if let Some(db) = value(snapshot.cursor) {
@@ -370,10 +368,11 @@ mod tests {
     }
 
     #[test]
-    fn parts_fill_their_rows() {
+    fn parts_fill_their_rows_up_to_a_calm_size() {
         for rows in 0..40 {
             let parts = Parts::of(rows);
-            assert_eq!(parts.force + parts.share + 2 * parts.psnr, rows);
+            let used = parts.force + parts.share + 2 * (parts.psnr + parts.gap);
+            assert!(used <= rows && (used == rows || rows > 17), "{rows}");
         }
     }
 }
