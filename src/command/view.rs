@@ -1,6 +1,7 @@
 //! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
 
 use std::io::{self, IsTerminal, Write};
+use std::sync::Arc;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
@@ -8,10 +9,17 @@ use crossterm::terminal::size as terminal_size;
 use ratatui::layout::Size;
 use ratatui_image::picker::ProtocolType;
 
+use super::sample;
 use crate::cli::{ImageProtocol, ViewArgs};
+use crate::data::Dataset;
+use crate::episode::EpisodeSource;
+use crate::model::checkpoint;
+use crate::model::observation::suits;
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::keys::{Key, parse_script};
+use crate::session::predict::Predictor;
+use crate::session::trained::Trained;
 use crate::tui::app::{App, Flow};
 use crate::tui::face::Face;
 use crate::tui::print;
@@ -59,15 +67,24 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Opens the dataset and the models that the arguments name.
+/// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data.
 fn open(args: &ViewArgs) -> anyhow::Result<Session> {
-    let data = args
-        .data
-        .as_deref()
-        .map_or("the sample episodes".into(), |path| {
-            path.display().to_string()
-        });
-    bail!("{data}: this build has no model to open it with");
+    let path = sample::data(args.data.as_ref())?;
+    let dataset = Dataset::open(&path)?;
+    let folders = if args.model.is_empty() {
+        vec![sample::model(None)?]
+    } else {
+        args.model.clone()
+    };
+    let mut models: Vec<Box<dyn Predictor>> = Vec::new();
+    for folder in folders {
+        let (model, probe) = checkpoint::load(&folder)?;
+        let first = dataset.load(0, model.config.layout())?;
+        suits(&model.config, &first).with_context(|| path.display().to_string())?;
+        let source = folder.display().to_string();
+        models.push(Box::new(Trained::new(model, probe, source)?));
+    }
+    Ok(Session::new(Arc::new(dataset), models))
 }
 
 /// Presses the keys one after the other, each once what the one before it asked for has been computed.
@@ -122,8 +139,6 @@ fn write(text: &str) -> anyhow::Result<()> {
 #[cfg(test)]
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
-    use std::sync::Arc;
 
     use super::*;
     use crate::session::fake::{FakePredictor, FakeSource};

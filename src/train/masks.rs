@@ -1,13 +1,18 @@
 //! Which experts are left out while training, so that switches are in the model's distribution (after Wu & Goodman
 //! 2018): one path of sets an episode and update, half of them full, else a set drawn from all sensor sets and redrawn
-//! at random steps. The prior is always in. The empty set trains the rollout itself.
+//! at random steps. The prior is always in.
+//!
+//! A redraw takes the empty set as often as all others together: what follows is a rollout from a belief that had seen
+//! something, decoded and compared, which is what open-loop prediction is made of.
 
 use rand::Rng;
 
 use crate::modality::ExpertSet;
 
 /// A set is redrawn at each step with this probability.
-const REDRAW: f64 = 0.15;
+const REDRAW: f64 = 0.2;
+/// A redraw takes the empty set with this probability, else any of them alike.
+const NOTHING: f64 = 0.5;
 
 /// The set of sensor experts at each of `beliefs` steps, of `experts` in all.
 pub fn path(experts: usize, beliefs: usize, rng: &mut impl Rng) -> Vec<ExpertSet> {
@@ -20,7 +25,12 @@ pub fn path(experts: usize, beliefs: usize, rng: &mut impl Rng) -> Vec<ExpertSet
     for _ in 0..beliefs {
         sets.push(set);
         if rng.random_bool(REDRAW) {
-            set = ExpertSet(rng.random_range(0..=full.0));
+            let nothing = rng.random_bool(NOTHING);
+            set = ExpertSet(if nothing {
+                0
+            } else {
+                rng.random_range(0..=full.0)
+            });
         }
     }
     sets
