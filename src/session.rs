@@ -84,7 +84,7 @@ enum Pending {
     Restoration(Restoration),
 }
 
-/// What a generation of requests asks for, and the cursor of its newest request.
+/// What a generation of requests asks for; the cursor only orders the work.
 #[derive(PartialEq)]
 struct Wanted {
     target: Target,

@@ -4,12 +4,9 @@
 
 use super::command::Scope;
 use super::snapshot::ModelInfo;
-use super::switches::{Reach, Switches};
+use super::switches::{Reach, Switches, checked_alpha};
 use crate::modality::Expert;
 use crate::model::trace::Alphas;
-
-/// Larger than any tempering that means something; keeps precisions finite.
-const LARGEST_ALPHA: f32 = 1000.0;
 
 /// A line that says why not.
 pub type Refusal = String;
@@ -132,15 +129,24 @@ pub fn temper(
     alpha: f32,
 ) -> Result<String, Refusal> {
     let expert = factor_at(model, position)?;
-    if !(0.0..=LARGEST_ALPHA).contains(&alpha) {
-        return Err(format!(
-            "α is a number from 0 to {LARGEST_ALPHA}, not {alpha}"
-        ));
-    }
-    // There is a -0 too; it is 0.
-    let alpha = alpha.abs();
+    let alpha = checked_alpha(alpha)?;
     change(model, switches, place, &[(expert, alpha)])?;
     Ok(format!("{} α {alpha} {}", expert.name(), place.words()))
+}
+
+/// Tempers an expert by so many tenths more or less than under the cursor. Whole tenths, so that down and up again
+/// comes back to exactly 1.
+pub fn temper_by(
+    model: &ModelInfo,
+    switches: &mut Switches,
+    place: Place,
+    position: usize,
+    tenths: i64,
+) -> Result<String, Refusal> {
+    let expert = factor_at(model, position)?;
+    let now = (switches.alpha(expert, place.step) * 10.0).round() as i64;
+    let tenths = now.saturating_add(tenths).max(0);
+    temper(model, switches, place, position, tenths as f32 / 10.0)
 }
 
 fn factor_at(model: &ModelInfo, position: usize) -> Result<Expert, Refusal> {

@@ -6,9 +6,6 @@ use super::keys::Key;
 use super::prompt;
 use super::snapshot::Snapshot;
 
-/// What one press of `-` or `=` adds to α.
-const ALPHA_STEP: f32 = 0.1;
-
 /// What a face has to do for a key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Action {
@@ -175,11 +172,8 @@ impl Input {
             (Mode::Context, by) => Some(Action::Session(Command::Context(by))),
             (Mode::Horizon, by) => Some(Action::Session(Command::Horizon(by))),
             (_, by) => {
-                let alpha = snapshot.experts.get(self.focused)?.alpha + by as f32 * ALPHA_STEP;
-                // Whole steps, so that ten of them down and up again come back to exactly 1.
-                let alpha = ((alpha / ALPHA_STEP).round() * ALPHA_STEP * 1000.0).round() / 1000.0;
-                let (expert, alpha) = (self.focused, alpha.max(0.0));
-                Some(Action::Session(Command::SetAlpha { expert, alpha }))
+                let (expert, tenths) = (self.focused, by);
+                Some(Action::Session(Command::Temper { expert, tenths }))
             }
         }
     }

@@ -43,6 +43,11 @@ impl Session {
                     fusing::temper(model, switches, place, expert, alpha)
                 });
             }
+            Command::Temper { expert, tenths } => {
+                self.switch(|model, switches, place| {
+                    fusing::temper_by(model, switches, place, expert, tenths)
+                });
+            }
             Command::AllOn => self.change(|session| {
                 session.settings.switches = Switches::default();
                 Ok("every expert as trained".to_owned())

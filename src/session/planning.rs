@@ -6,14 +6,14 @@ use super::fusing::Refusal;
 impl Session {
     /// Sets c, if there is a belief at the c-th image and something to predict after it.
     pub(super) fn set_context(&mut self, context: usize) -> Result<String, Refusal> {
-        let (least, most) = self.context_range();
+        let (least, _) = self.context_range();
         let steps = self.opened().map_or(0, |opened| opened.steps());
         if context < least {
             return Err(format!(
                 "the first belief is at step {least}: nothing can be predicted before it"
             ));
         }
-        if context > most {
+        if context >= steps {
             return Err(format!(
                 "nothing to predict after step {context} of {steps}"
             ));

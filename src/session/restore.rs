@@ -53,7 +53,11 @@ impl Session {
             settings.scope = state.scope.unwrap_or(settings.scope);
             settings.horizon = state.horizon.unwrap_or(settings.horizon);
             session.take_switches(&state, &mut complaints);
-            if let Some(Err(why)) = state.context.map(|context| session.set_context(context)) {
+            // Where it already is may be the only place there is.
+            let context = state
+                .context
+                .filter(|&context| context != session.rollout().start + 1);
+            if let Some(Err(why)) = context.map(|context| session.set_context(context)) {
                 complaints.push(format!("context: {why}"));
             }
             Ok("state restored".to_owned())

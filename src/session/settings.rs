@@ -40,13 +40,6 @@ pub struct Rollout {
     pub horizon: usize,
 }
 
-impl Rollout {
-    /// Whether it predicts this step.
-    pub fn contains(self, step: usize) -> bool {
-        step > self.start && step <= self.start + self.horizon
-    }
-}
-
 impl Settings {
     /// Context and horizon fitted to an episode: a belief before it, and at least one step after it where there is.
     pub fn rollout(&self, steps: usize, frame_stack: usize) -> Rollout {

@@ -10,7 +10,7 @@
 use std::fmt::{self, Write};
 
 use super::command::{Looping, Scope};
-use super::switches::{Reach, Run, Switches};
+use super::switches::{Reach, Run, Switches, checked_alpha};
 use crate::modality::Expert;
 
 /// The version written, and the only one that can be read.
@@ -196,10 +196,7 @@ fn run(text: &str) -> Option<(Expert, Run)> {
     let (alpha, steps) = rest
         .split_once('@')
         .map_or((rest, None), |(alpha, steps)| (alpha, Some(steps)));
-    let alpha: f32 = alpha.parse().ok()?;
-    if !alpha.is_finite() || alpha < 0.0 {
-        return None;
-    }
+    let alpha = checked_alpha(alpha.parse().ok()?).ok()?;
     let reach = match steps.map(|steps| {
         steps
             .split_once('-')
@@ -225,7 +222,6 @@ fn run(text: &str) -> Option<(Expert, Run)> {
             })?
         }
     };
-    let alpha = alpha.abs();
     Some((expert, Run { reach, alpha }))
 }
 

@@ -10,6 +10,18 @@ use crate::modality::Expert;
 
 /// α as trained. Values are compared as they were set; none is computed.
 const TRAINED: f32 = 1.0;
+/// The weakest and the strongest tempering; wider than means anything, and all precisions stay finite.
+const TEMPERINGS: std::ops::RangeInclusive<f32> = 0.001..=1000.0;
+
+/// Takes α as a user gives it: off, or within bounds.
+pub fn checked_alpha(alpha: f32) -> Result<f32, String> {
+    let alpha = if alpha == 0.0 { 0.0 } else { alpha };
+    if alpha == 0.0 || TEMPERINGS.contains(&alpha) {
+        return Ok(alpha);
+    }
+    let (least, most) = (TEMPERINGS.start(), TEMPERINGS.end());
+    Err(format!("α is 0, or from {least} to {most}, not {alpha}"))
+}
 
 /// The steps a change reaches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -275,3 +275,14 @@ fn a_session_without_models_still_shows_the_recording() {
     );
     assert!(snapshot.episode.is_none() && is_refusal(&snapshot));
 }
+
+#[test]
+fn an_episode_can_be_too_short_to_predict_anything() {
+    let source = Arc::new(FakeSource::with_steps(1, 2));
+    let mut session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    let snapshot = run(&mut session, [Last]);
+    assert_eq!((snapshot.start, snapshot.horizon), (1, 0));
+    assert!(snapshot.frames.belief.is_some() && snapshot.frames.prediction.is_none());
+    assert!(is_refusal(&run(&mut session, [PredictHere])));
+    assert_eq!(run(&mut session, [Context(5), Horizon(-2)]).horizon, 0);
+}

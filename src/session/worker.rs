@@ -56,8 +56,6 @@ pub struct Answer {
     pub inferred: Option<Arc<Inferred>>,
     /// Positions at each step from the beliefs; none without a probe.
     pub belief_positions: Option<Arc<Vec<Option<Estimate>>>>,
-    /// The steps that were rolled out.
-    pub rollout: Option<Rollout>,
     /// Positions at each step from the rollout; none without a probe.
     pub rollout_positions: Option<Arc<Vec<Option<Estimate>>>>,
     /// The frames of each step.
@@ -78,7 +76,6 @@ impl Answer {
             opened: None,
             inferred: None,
             belief_positions: None,
-            rollout: None,
             rollout_positions: None,
             strip: Arc::default(),
             psnr_db: Arc::default(),
@@ -254,7 +251,6 @@ impl Worker {
                     psnr_db[step].prediction = pictured.psnr_db(step);
                 }
                 left.extend(pictured.undecoded());
-                answer.rollout = Some(rollout);
                 answer.rollout_positions.clone_from(&pictured.positions);
             }
             answer.strip = Arc::new(cells);

@@ -11,6 +11,8 @@ use crate::session::predict::{PredictError, Predictor};
 use crate::session::snapshot::{Estimate, ModelInfo};
 
 const LATENT: usize = 4;
+/// Variance before anything was seen, and the largest there is: a prior tempered to nearly nothing stays finite.
+const FIRST_VARIANCE: f32 = 20.0;
 /// Variance that one step of the dynamics adds.
 const STEP_VARIANCE: f32 = 0.004;
 /// W of the position probe: metres along x and y of the first two dimensions.
@@ -175,7 +177,7 @@ impl Predictor for FakePredictor {
             ..GaussianTrace::default()
         };
         let (mut prior, mut posterior) = (empty(), empty());
-        let (mut mean, mut variance) = ([0.0_f32; LATENT], [20.0_f32; LATENT]);
+        let (mut mean, mut variance) = ([0.0_f32; LATENT], [FIRST_VARIANCE; LATENT]);
         for i in 0..count {
             prior.mean.extend(mean);
             prior.log_var.extend(variance.map(f32::ln));
@@ -260,6 +262,6 @@ fn advance(mean: &mut [f32; LATENT], variance: &mut [f32; LATENT], control: Opti
     mean[0] += x;
     mean[1] += y;
     for v in variance {
-        *v += STEP_VARIANCE;
+        *v = (*v + STEP_VARIANCE).min(FIRST_VARIANCE);
     }
 }

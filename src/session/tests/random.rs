@@ -28,6 +28,7 @@ fn any_command() -> impl Strategy<Value = Command> {
             prop_oneof![-0.5_f32..2.0, Just(0.0), any::<f32>()]
         )
             .prop_map(|(expert, alpha)| SetAlpha { expert, alpha }),
+        ((0_usize..5), -12_i64..12).prop_map(|(expert, tenths)| Temper { expert, tenths }),
         Just(CycleScope),
         Just(PredictHere),
         any::<usize>().prop_map(SetContext),

@@ -168,7 +168,7 @@ impl Memo {
         self.beliefs.get(key)
     }
 
-    /// Rolls out from these beliefs.
+    /// Rolls out from these beliefs, where there is a step to predict.
     pub fn roll_out(
         &mut self,
         key: &BeliefKey,
@@ -176,6 +176,9 @@ impl Memo {
         steps: usize,
         predictor: &dyn Predictor,
     ) -> Result<(), PredictError> {
+        if rollout.horizon == 0 {
+            return Ok(());
+        }
         let Some(inferred) = self
             .beliefs
             .get(key)
