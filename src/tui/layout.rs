@@ -19,9 +19,9 @@ use super::strip;
 pub const SMALLEST: (u16, u16) = (40, 12);
 
 /// Columns of the left label and of the right value in a timeline.
-const TIMELINE_EDGES: u16 = 14;
+const TIMELINE_EDGES: u16 = 15;
 /// Columns of the left half of a small screen.
-const LEFT: u16 = 46;
+const LEFT: u16 = 47;
 /// Images in the frame row.
 const IMAGES: u16 = 4;
 /// Rows of the smallest timeline: header, track, force, two of shares.

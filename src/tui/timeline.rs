@@ -24,7 +24,7 @@ use crate::session::command::Looping;
 use crate::session::snapshot::{Snapshot, StepPsnr};
 
 const LABELS: u16 = 7;
-const VALUES: u16 = 7;
+const VALUES: u16 = 8;
 /// Bars of PSNR go from here to here, in dB.
 const PSNR_RANGE: (f32, f32) = (10.0, 40.0);
 
