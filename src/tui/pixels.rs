@@ -63,6 +63,8 @@ pub fn forced(protocol: ProtocolType) -> Picker {
 fn query() -> Option<Picker> {
     let options = QueryStdioOptions {
         timeout: ANSWER,
+        // Enlarged pixels deflate to a hundredth, which counts over SSH; the encoder's thread has the time.
+        kitty_compression: true,
         ..QueryStdioOptions::default()
     };
     let picker = Picker::from_query_stdio_with_options(options).ok()?;
