@@ -176,7 +176,7 @@ pub fn load(folder: &Path) -> Result<(Model, Option<Probe>), CheckpointError> {
         path: path.clone(),
         what,
     };
-    let model = Model::new(config, 0, &Device::Cpu).map_err(|error| refuse(error.to_string()))?;
+    let model = Model::blank(config, &Device::Cpu).map_err(|error| refuse(error.to_string()))?;
     load_weights(&model, &path)?;
     let path = folder.join(PROBE);
     let probe = if path.exists() {
