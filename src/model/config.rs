@@ -173,12 +173,10 @@ impl Config {
 
     /// Checks what the networks rely on.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        let refuse = |key, what: String| Err(ConfigError { key, what });
-        if self.experts.first() != Some(&Expert::Vision) || self.experts.contains(&Expert::Prior) {
-            return refuse(
-                "experts",
-                "start with \"vision\", and leave out \"prior\", which is always there".into(),
-            );
+        let first = self.experts.first() == Some(&Expert::Vision);
+        if !first || self.experts.contains(&Expert::Prior) || repeats(&self.experts) {
+            let what = "start with \"vision\", name each once, and leave out \"prior\", which is always there";
+            return refuse("experts", what);
         }
         if self.frame_size != 64 {
             return refuse(
@@ -189,55 +187,73 @@ impl Config {
                 ),
             );
         }
-        if self.window == 0 || self.latent == 0 || self.hidden == 0 || self.mixtures == 0 {
-            return refuse("window, latent, hidden, mixtures", "must not be 0".into());
+        let sizes = [
+            ("frame_stack", self.frame_stack + 1),
+            ("window", self.window),
+            ("latent", self.latent),
+            ("hidden", self.hidden),
+            ("mixtures", self.mixtures),
+            ("training.batch", self.training.batch),
+            ("training.n_step", self.training.n_step),
+        ];
+        if let Some((key, size)) = sizes
+            .into_iter()
+            .find(|(_, size)| !(1..=MOST).contains(size))
+        {
+            return refuse(key, format!("must lie between 1 and {MOST}, is {size}"));
         }
-        for (key, channels, known) in [
-            ("haptic", &self.haptic, HAPTIC_CHANNELS),
-            ("proprio", &self.proprio, PROPRIO_CHANNELS),
-        ] {
-            if let Some(name) = channels
-                .names
-                .iter()
-                .find(|name| !known.contains(&name.as_str()))
-            {
-                return refuse(
-                    key,
-                    format!("no channel {name:?}; there are {}", known.join(" ")),
-                );
-            }
-            for numbers in [&channels.mean, &channels.scale] {
-                if !numbers.is_empty() && numbers.len() != channels.names.len() {
-                    return refuse(
-                        key,
-                        format!(
-                            "{} channels but {} numbers",
-                            channels.names.len(),
-                            numbers.len()
-                        ),
-                    );
-                }
-            }
-            if channels
-                .scale
-                .iter()
-                .any(|scale| !scale.is_finite() || *scale <= 0.0)
-            {
-                return refuse(key, "a scale must be a positive number".into());
-            }
+        self.haptic.validate("haptic", &HAPTIC_CHANNELS)?;
+        self.proprio.validate("proprio", &PROPRIO_CHANNELS)?;
+        if self.training.masks && !self.prior_expert {
+            return refuse(
+                "training.masks",
+                "without `prior_expert` a step whose experts are all left out has no belief",
+            );
         }
-        if !self.training.error_weights.is_empty()
-            && self.training.error_weights.len() != self.experts.len()
+        self.training.validate(self.experts.len())
+    }
+}
+
+/// No size of a model is larger.
+const MOST: usize = 4096;
+
+fn refuse<T>(key: &'static str, what: impl Into<String>) -> Result<T, ConfigError> {
+    Err(ConfigError {
+        key,
+        what: what.into(),
+    })
+}
+
+fn repeats<T: PartialEq>(items: &[T]) -> bool {
+    items
+        .iter()
+        .enumerate()
+        .any(|(i, item)| items[..i].contains(item))
+}
+
+impl Training {
+    fn validate(&self, experts: usize) -> Result<(), ConfigError> {
+        let positive = [
+            ("training.learning_rate", self.learning_rate),
+            ("training.clip", f64::from(self.clip)),
+            ("training.final_rate", self.final_rate),
+        ];
+        if let Some((key, value)) = positive
+            .into_iter()
+            .find(|(_, value)| !(value.is_finite() && *value > 0.0))
+        {
+            return refuse(key, format!("must be a positive number, is {value}"));
+        }
+        if !self.kl_weight.is_finite() || self.kl_weight < 0.0 {
+            return refuse("training.kl_weight", "must be 0 or a positive number");
+        }
+        let weights = &self.error_weights;
+        if !weights.is_empty()
+            && (weights.len() != experts || weights.iter().any(|w| !w.is_finite() || *w < 0.0))
         {
             return refuse(
                 "training.error_weights",
-                format!("one for each of {} experts", self.experts.len()),
-            );
-        }
-        if self.training.batch == 0 || self.training.n_step == 0 {
-            return refuse(
-                "training.batch, training.n_step",
-                "must be at least 1".into(),
+                format!("one number, 0 or positive, for each of {experts} experts"),
             );
         }
         Ok(())
@@ -253,6 +269,40 @@ impl Channels {
         }
     }
 
+    fn validate(&self, key: &'static str, known: &[&str]) -> Result<(), ConfigError> {
+        if let Some(name) = self
+            .names
+            .iter()
+            .find(|name| !known.contains(&name.as_str()))
+        {
+            return refuse(
+                key,
+                format!("no channel {name:?}; there are {}", known.join(" ")),
+            );
+        }
+        if self.names.is_empty() || repeats(&self.names) {
+            return refuse(key, "name at least one channel, and each once");
+        }
+        for numbers in [&self.mean, &self.scale] {
+            if !numbers.is_empty() && numbers.len() != self.names.len() {
+                return refuse(
+                    key,
+                    format!(
+                        "{} channels but {} numbers",
+                        self.names.len(),
+                        numbers.len()
+                    ),
+                );
+            }
+        }
+        if self.mean.iter().any(|mean| !mean.is_finite())
+            || self.scale.iter().any(|s| !s.is_finite() || *s <= 0.0)
+        {
+            return refuse(key, "a mean must be a number, a scale a positive one");
+        }
+        Ok(())
+    }
+
     /// For each channel: its place among all of the modality's channels, its mean and its scale.
     pub fn columns<'a>(
         &'a self,
@@ -266,5 +316,42 @@ impl Channels {
                 self.scale.get(i).copied().unwrap_or(1.0),
             ))
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_named_models_are_valid_and_what_cannot_be_is_refused_by_key() {
+        for name in Config::NAMES {
+            assert!(
+                Config::named(name).is_some_and(|config| config.validate().is_ok()),
+                "{name}"
+            );
+        }
+        let refused = |change: fn(&mut Config)| {
+            let mut config = Config::named("v-h-p").expect("a known name");
+            change(&mut config);
+            config.validate().map_err(|error| error.key)
+        };
+        assert_eq!(refused(|c| c.hidden = 4_000_000_000), Err("hidden"));
+        assert_eq!(refused(|c| c.experts.push(Expert::Haptic)), Err("experts"));
+        assert_eq!(refused(|c| c.experts.clear()), Err("experts"));
+        assert_eq!(refused(|c| c.haptic.names.clear()), Err("haptic"));
+        assert_eq!(
+            refused(|c| c.proprio.names[0] = "qx".into()),
+            Err("proprio")
+        );
+        assert_eq!(refused(|c| c.prior_expert = false), Err("training.masks"));
+        assert_eq!(
+            refused(|c| c.training.learning_rate = f64::NAN),
+            Err("training.learning_rate")
+        );
+        assert_eq!(
+            refused(|c| c.training.error_weights = vec![1.0]),
+            Err("training.error_weights")
+        );
     }
 }

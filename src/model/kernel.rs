@@ -37,6 +37,22 @@ pub fn arch() -> Arch {
     })
 }
 
+/// Runs `f` compiled for this machine's instruction set. `f` must be marked `#[inline(always)]`.
+fn vectorised<R>(f: impl FnMut() -> R) -> R {
+    struct Inlined<F>(F);
+    impl<R, F: FnMut() -> R> pulp::NullaryFnOnce for Inlined<F> {
+        type Output = R;
+
+        // By `FnMut`, which is the closure itself: `FnOnce` goes through a shim that is not always inlined, and then
+        // runs as portable code.
+        #[inline(always)]
+        fn call(mut self) -> R {
+            (self.0)()
+        }
+    }
+    arch().dispatch(Inlined(f))
+}
+
 /// The numbers of a contiguous f32 tensor on the CPU.
 fn values<'a>(storage: &'a CpuStorage, layout: &Layout) -> Result<&'a [f32]> {
     match (layout.contiguous_offsets(), storage) {

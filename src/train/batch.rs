@@ -66,10 +66,11 @@ impl Batch {
         let count = observed.len();
         let mut seen = Vec::new();
         for expert in 0..config.experts.len() {
-            let all: Vec<f32> = observed
+            let each: Vec<&[f32]> = observed
                 .iter()
-                .flat_map(|o| o.experts[expert].iter().copied())
+                .map(|o| o.experts[expert].as_slice())
                 .collect();
+            let all = each.concat();
             let width = all.len() / (count * beliefs);
             seen.push(Tensor::from_vec(
                 all,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::chain::cpu;
 use super::pointwise::sum_of_squares;
-use super::{arch, values};
+use super::{values, vectorised};
 
 /// First and second moments of one flat parameter tensor, and how often it was updated.
 #[derive(Clone, Debug, Default)]
@@ -100,7 +100,7 @@ impl InplaceOp2 for Pass {
             .zip(first.par_chunks_mut(chunk))
             .zip(second.par_chunks_mut(chunk))
             .for_each(|(((theta, gradient), first), second)| {
-                arch().dispatch(
+                vectorised(
                     #[inline(always)]
                     || {
                         let lines = theta

@@ -181,6 +181,8 @@ impl Chain {
         // Gradient of the current segment's output, over the whole part.
         let mut outer = self.take(dy.len());
         outer.copy_from_slice(dy);
+        // Gradients of one group, above and below a layer.
+        let (mut gradient, mut below) = (Vec::new(), Vec::new());
         for segment in self.segments.iter().rev() {
             let first = segment.0.start;
             let mut inner = self.take(samples * self.layers[first].inputs());
@@ -188,14 +190,14 @@ impl Chain {
             let mut scratch = self.take(self.scratch(segment, samples));
             for group in groups(samples, segment.1) {
                 let last = self.layers[segment.0.end - 1].outputs();
-                let mut gradient = outer[group.start * last..group.end * last].to_vec();
+                gradient.clear();
+                gradient.extend_from_slice(&outer[group.start * last..group.end * last]);
                 for index in segment.0.clone().rev() {
                     let layer = &self.layers[index];
                     let input = index.checked_sub(1).map_or(x, |before| &*outputs[before]);
                     let input = &input[group.start * layer.inputs()..group.end * layer.inputs()];
                     let output =
                         &outputs[index][group.start * layer.outputs()..group.end * layer.outputs()];
-                    let mut below = Vec::new();
                     let target = if index == first {
                         wanted.then(|| {
                             &mut inner[group.start * layer.inputs()..group.end * layer.inputs()]
@@ -215,7 +217,7 @@ impl Chain {
                         target,
                         scratch,
                     );
-                    gradient = below;
+                    std::mem::swap(&mut gradient, &mut below);
                 }
             }
             self.give(scratch);

@@ -1,6 +1,6 @@
 //! The geometry of a convolution: windows of a channels-last image laid out as rows, and rows added back.
 
-use super::arch;
+use super::vectorised;
 
 /// Windows of `kernel_height × kernel_width` pixels moved by `stride` over a channels-last image.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -59,7 +59,7 @@ impl Windows {
 
     /// The image as rows, `(count, len)`.
     pub fn gather(&self, image: &[f32], rows: &mut [f32]) {
-        arch().dispatch(
+        vectorised(
             #[inline(always)]
             || {
                 self.runs(|in_image, in_rows, length, zero_before, zero_after| {
@@ -74,7 +74,7 @@ impl Windows {
 
     /// Adds rows, `(count, len)`, back onto the image: the adjoint of [`Self::gather`].
     pub fn scatter_add(&self, rows: &[f32], image: &mut [f32]) {
-        arch().dispatch(
+        vectorised(
             #[inline(always)]
             || {
                 self.runs(|in_image, in_rows, length, _, _| {

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::arch;
+use super::vectorised;
 
 /// A nonlinearity after a layer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -58,14 +58,13 @@ pub fn tanh(x: f32) -> f32 {
 impl Activation {
     /// Applies it in place.
     pub fn apply(self, x: &mut [f32]) {
-        let arch = arch();
         match self {
             Self::Linear => {}
-            Self::Relu => arch.dispatch(
+            Self::Relu => vectorised(
                 #[inline(always)]
                 || x.iter_mut().for_each(|v| *v = v.max(0.0)),
             ),
-            Self::Elu => arch.dispatch(
+            Self::Elu => vectorised(
                 #[inline(always)]
                 || {
                     for v in x.iter_mut() {
@@ -74,7 +73,7 @@ impl Activation {
                     }
                 },
             ),
-            Self::Sigmoid => arch.dispatch(
+            Self::Sigmoid => vectorised(
                 #[inline(always)]
                 || x.iter_mut().for_each(|v| *v = sigmoid(*v)),
             ),
@@ -83,10 +82,9 @@ impl Activation {
 
     /// Multiplies a gradient with respect to the output `y` by the derivative there, in place.
     pub fn backward(self, y: &[f32], gradient: &mut [f32]) {
-        let arch = arch();
         match self {
             Self::Linear => {}
-            Self::Relu => arch.dispatch(
+            Self::Relu => vectorised(
                 #[inline(always)]
                 || {
                     for (g, &y) in gradient.iter_mut().zip(y) {
@@ -94,7 +92,7 @@ impl Activation {
                     }
                 },
             ),
-            Self::Elu => arch.dispatch(
+            Self::Elu => vectorised(
                 #[inline(always)]
                 || {
                     for (g, &y) in gradient.iter_mut().zip(y) {
@@ -102,7 +100,7 @@ impl Activation {
                     }
                 },
             ),
-            Self::Sigmoid => arch.dispatch(
+            Self::Sigmoid => vectorised(
                 #[inline(always)]
                 || {
                     for (g, &y) in gradient.iter_mut().zip(y) {
@@ -116,7 +114,7 @@ impl Activation {
 
 /// `y += row` for every row of `y`.
 pub fn add_row(y: &mut [f32], row: &[f32]) {
-    arch().dispatch(
+    vectorised(
         #[inline(always)]
         || {
             for line in y.chunks_exact_mut(row.len()) {
@@ -130,7 +128,7 @@ pub fn add_row(y: &mut [f32], row: &[f32]) {
 
 /// `row += ` the sum of the rows of `y`.
 pub fn sum_rows(y: &[f32], row: &mut [f32]) {
-    arch().dispatch(
+    vectorised(
         #[inline(always)]
         || {
             for line in y.chunks_exact(row.len()) {
@@ -144,7 +142,7 @@ pub fn sum_rows(y: &[f32], row: &mut [f32]) {
 
 /// Σ x² in sixteen running sums, so that the order, and the bits, are the same everywhere.
 pub fn sum_of_squares(x: &[f32]) -> f32 {
-    arch().dispatch(
+    vectorised(
         #[inline(always)]
         || {
             let mut lanes = [0.0_f32; 16];

@@ -9,7 +9,7 @@ use candle_core::{CpuStorage, CustomOp3, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
 use super::chain::{Chain, part_size, sum_parts};
-use super::{arch, values};
+use super::{values, vectorised};
 
 /// Squared error of each sample, once the operation has run.
 pub type PerSample = Arc<Mutex<Vec<f32>>>;
@@ -78,7 +78,7 @@ impl SquaredError {
 /// ‖y − t‖², leaving its gradient times `weight` in `dy`. Summed in sixteen lanes, so that the bits are the same
 /// everywhere.
 fn difference(y: &[f32], t: &[f32], weight: f32, dy: &mut [f32]) -> f32 {
-    arch().dispatch(
+    vectorised(
         #[inline(always)]
         || {
             let mut lanes = [0.0_f32; 16];

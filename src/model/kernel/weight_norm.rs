@@ -4,7 +4,7 @@ use candle_core::{CpuStorage, CustomOp1, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
 use super::chain::cpu;
-use super::values;
+use super::{values, vectorised};
 
 /// One stretch of a network's flat parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +79,7 @@ fn dots(a: &[f32], b: &[f32], norms: usize, inner: usize) -> Vec<f32> {
 
 /// A dot product in sixteen lanes.
 fn dot(a: &[f32], b: &[f32]) -> f32 {
-    super::arch().dispatch(
+    vectorised(
         #[inline(always)]
         || {
             let mut lanes = [0.0_f32; 16];

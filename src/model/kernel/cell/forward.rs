@@ -1,9 +1,9 @@
 //! The cell's step: gates, new state, mixture, mean, log-variance.
 
 use super::{Kept, Sizes, Weights};
-use crate::model::kernel::arch;
 use crate::model::kernel::matmul::{Mat, Write, matmul};
 use crate::model::kernel::pointwise::{add_row, exp, sigmoid, tanh};
+use crate::model::kernel::vectorised;
 
 /// The output `(B, hidden + 2 Z)`, and what the backward pass needs.
 pub(super) fn step(sizes: Sizes, h: &[f32], x: &[f32], flat: &[f32]) -> (Vec<f32>, Kept) {
@@ -79,7 +79,7 @@ fn gates(sizes: Sizes, h: &[f32], x: &[f32], w: &Weights) -> (Vec<f32>, Vec<f32>
     let mut gates = product(x, w.input, sizes.inputs, w.input_bias);
     let recurrent = product(h, w.recurrent, hidden, w.recurrent_bias);
     let mut state = vec![0.0; h.len()];
-    arch().dispatch(
+    vectorised(
         #[inline(always)]
         || {
             let lines = gates
