@@ -239,11 +239,7 @@ impl Dataset {
     fn file_report(&self, home: usize) -> FileReport {
         let file = &self.files[home];
         let index = &file.index;
-        let secs: f64 = file
-            .episodes()
-            .iter()
-            .map(|meta| meta.end_nanos.saturating_sub(meta.start_nanos) as f64 * 1e-9)
-            .sum();
+        let secs = file.recorded_secs();
         let mut topics: Vec<_> = index
             .channels
             .iter()
