@@ -2,6 +2,7 @@
 
 pub mod eval;
 pub mod info;
+pub mod sample;
 pub mod simulate;
 pub mod train;
 pub mod view;

@@ -204,6 +204,17 @@ impl Episode {
         (self.steps_nanos[t] - self.steps_nanos[0]) as f64 * 1e-9
     }
 
+    /// Median time between two images, in seconds; none with fewer than two.
+    pub fn step_secs(&self) -> Option<f64> {
+        let mut gaps: Vec<i64> = self
+            .steps_nanos
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .collect();
+        gaps.sort_unstable();
+        gaps.get(gaps.len() / 2).map(|&gap| gap as f64 * 1e-9)
+    }
+
     /// Root-mean-square force over the window of step `t`, in newtons; the face's measure of contact.
     pub fn force_newtons(&self, t: usize) -> Option<f32> {
         let window = self.layout.window;

@@ -24,6 +24,7 @@ pub mod cli;
 pub mod command;
 pub mod data;
 pub mod episode;
+pub mod eval;
 pub mod measure;
 pub mod modality;
 pub mod model;

@@ -1,1 +1,7 @@
-//! stub
+//! Frame metrics and diagnostics of a fusion: pure functions over plain numbers, used by evaluation, session and
+//! training alike. Knows no network and no file.
+
+pub mod bootstrap;
+pub mod ellipse;
+pub mod frame;
+pub mod fusion;

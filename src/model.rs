@@ -1,3 +1,148 @@
 //! What is learned: tensors in, tensors out. Knows no dataset file and no screen.
+//!
+//! Each sensor expert is an [`encoder`] from what it sees to a Gaussian; [`dynamics`] states the prior expert; [`experts`]
+//! multiplies them; [`filter`] goes step by step; a [`decoder`] an expert turns a latent back into what it sees.
 
+pub mod checkpoint;
+pub mod config;
+pub mod decoder;
+pub mod dynamics;
+pub mod elbo;
+pub mod encoder;
+pub mod experts;
+pub mod fallback;
+pub mod filter;
+pub mod gaussian;
+pub mod inspect;
+pub mod kernel;
+mod layers;
+pub mod network;
+pub mod observation;
+pub mod probe;
 pub mod trace;
+
+use candle_core::{Device, Result, Tensor};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+
+use self::config::Config;
+use self::decoder::Decoder;
+use self::dynamics::Dynamics;
+use self::encoder::Encoder;
+use self::network::Network;
+use crate::modality::Expert;
+
+/// A model: an encoder and a decoder for each sensor expert, and the dynamics.
+#[derive(Debug)]
+pub struct Model {
+    /// Its sizes and settings.
+    pub config: Config,
+    /// In the order of the experts.
+    pub encoders: Vec<Encoder>,
+    /// In the order of the experts.
+    pub decoders: Vec<Decoder>,
+    /// The prior expert.
+    pub dynamics: Dynamics,
+}
+
+/// The folded weights of every network: with gradients while training, without once trained.
+#[derive(Clone, Debug)]
+pub struct Weights {
+    /// In the order of the experts.
+    pub encoders: Vec<Tensor>,
+    /// In the order of the experts.
+    pub decoders: Vec<Tensor>,
+    /// The dynamics'.
+    pub dynamics: Tensor,
+}
+
+impl Weights {
+    /// The same without a gradient.
+    pub fn detach(&self) -> Self {
+        let all = |weights: &[Tensor]| weights.iter().map(Tensor::detach).collect();
+        Self {
+            encoders: all(&self.encoders),
+            decoders: all(&self.decoders),
+            dynamics: self.dynamics.detach(),
+        }
+    }
+}
+
+/// The stem of an expert's networks in a checkpoint, as the authors name theirs.
+fn stem(expert: Expert) -> &'static str {
+    match expert {
+        Expert::Vision => "img",
+        Expert::Joint => "context",
+        other => other.name(),
+    }
+}
+
+impl Model {
+    /// A model before training, its parameters drawn from `seed`. The config must have been validated.
+    pub fn new(config: Config, seed: u64, device: &Device) -> Result<Self> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let (mut encoders, mut decoders) = (Vec::new(), Vec::new());
+        for &expert in &config.experts {
+            let (enc, dec) = (
+                format!("{}_enc", stem(expert)),
+                format!("{}_dec", stem(expert)),
+            );
+            if expert == Expert::Vision {
+                encoders.push(Encoder::of_images(&config, &enc, &mut rng, device)?);
+                decoders.push(Decoder::of_images(&config, &dec, &mut rng, device)?);
+            } else {
+                let channels = config
+                    .channels(expert)
+                    .iter()
+                    .map(|(channels, _)| channels.names.len())
+                    .sum();
+                encoders.push(Encoder::of_windows(
+                    &config, channels, &enc, &mut rng, device,
+                )?);
+                decoders.push(Decoder::of_windows(
+                    &config, channels, &dec, &mut rng, device,
+                )?);
+            }
+        }
+        let dynamics = Dynamics::new(&config, "dyn", &mut rng, device)?;
+        Ok(Self {
+            config,
+            encoders,
+            decoders,
+            dynamics,
+        })
+    }
+
+    /// Every network: encoders, decoders, dynamics.
+    pub fn networks(&self) -> impl Iterator<Item = &Network> {
+        let encoders = self.encoders.iter().map(|encoder| &encoder.network);
+        let decoders = self.decoders.iter().map(|decoder| &decoder.network);
+        encoders
+            .chain(decoders)
+            .chain(std::iter::once(&self.dynamics.network))
+    }
+
+    /// Trained numbers of all networks.
+    pub fn parameters(&self) -> usize {
+        self.networks()
+            .map(|network| network.theta().elem_count())
+            .sum()
+    }
+
+    /// The folded weights of every network, with gradients.
+    pub fn weights(&self) -> Result<Weights> {
+        Ok(Weights {
+            encoders: self
+                .encoders
+                .iter()
+                .map(|e| e.network.folded())
+                .collect::<Result<_>>()?,
+            decoders: self
+                .decoders
+                .iter()
+                .map(|d| d.network.folded())
+                .collect::<Result<_>>()?,
+            dynamics: self.dynamics.network.folded()?,
+        })
+    }
+}

@@ -1,5 +1,327 @@
 //! The interactive core: commands in, snapshots out; computation on a worker.
+//!
+//! ```text
+//! face ── apply(Command) ─► Session ── newest request ─► worker: read, encode, filter, roll out, decode
+//! face ◄─ snapshot() ────── Session ◄─ newest answer ─── (owns the models; memoises)
+//! ```
+//! A session is owned by one thread and opens no files. What it is asked changes its state at once; what has to be
+//! computed follows, and until then the last picture stays and [`Snapshot::busy`] says so. A command that needs the
+//! length of an episode which is still being read waits for it, in order.
 
+pub mod badge;
 pub mod command;
+pub mod fake;
+pub mod fusing;
+pub mod input;
+pub mod keymap;
+pub mod keys;
+pub mod playback;
 pub mod predict;
+pub mod settings;
 pub mod snapshot;
+pub mod state;
+pub mod switches;
+pub mod trained;
+
+mod perform;
+mod planning;
+mod prompt;
+mod restore;
+mod show;
+mod worker;
+
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
+use std::sync::{Arc, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use command::Command;
+use playback::Playback;
+use predict::Predictor;
+use restore::Restoration;
+use settings::{History, Settings};
+use snapshot::{Message, ModelInfo, Snapshot};
+use switches::Switches;
+pub use worker::THREAD;
+use worker::{Answer, Opened, Request, Shared, Target};
+
+use crate::episode::EpisodeSource;
+
+/// How soon to look again while something is computed, for a face without a waker.
+const POLL: Duration = Duration::from_millis(8);
+/// Commands that may wait for an episode; more than anyone types in the time.
+const MOST_PENDING: usize = 1024;
+
+/// Models, episodes, one cursor.
+pub struct Session {
+    source: Arc<dyn EpisodeSource>,
+    models: Vec<Arc<ModelInfo>>,
+    /// W of each model's position probe.
+    position_weights: Vec<Option<Arc<[f32]>>>,
+    shared: Arc<Shared>,
+    worker: Option<JoinHandle<()>>,
+    target: Target,
+    playback: Playback,
+    settings: Settings,
+    history: History,
+    /// Keys of a restored state string that mean nothing here, to be written back.
+    unknown_keys: Vec<(String, String)>,
+    /// What waits for the episode to be read.
+    pending: VecDeque<Pending>,
+    message: Option<Message>,
+    generation: u64,
+    wanted: Option<Wanted>,
+    answer: Option<Answer>,
+    shown: Snapshot,
+    /// Whether `shown` has changed since the last `update`.
+    news: bool,
+}
+
+enum Pending {
+    Command(Command),
+    Restoration(Restoration),
+}
+
+/// What a generation of requests asks for; the cursor only orders the work.
+#[derive(PartialEq)]
+struct Wanted {
+    target: Target,
+    switches: Switches,
+    context: usize,
+    horizon: usize,
+}
+
+impl Session {
+    /// Shows the first episode with the first model, and starts to compute.
+    pub fn new(source: Arc<dyn EpisodeSource>, models: Vec<Box<dyn Predictor>>) -> Self {
+        let infos: Vec<_> = models.iter().map(|m| Arc::new(m.info().clone())).collect();
+        let position_weights = models
+            .iter()
+            .map(|m| m.position_weights().map(Arc::from))
+            .collect();
+        let shared = Arc::new(Shared::default());
+        let mut session = Self {
+            shown: show::empty(source.as_ref(), &infos),
+            models: infos,
+            position_weights,
+            worker: None,
+            target: Target {
+                model: 0,
+                episode: 0,
+            },
+            playback: Playback::default(),
+            settings: Settings::default(),
+            history: History::default(),
+            unknown_keys: Vec::new(),
+            pending: VecDeque::new(),
+            message: None,
+            generation: 0,
+            wanted: None,
+            answer: None,
+            news: true,
+            shared: Arc::clone(&shared),
+            source: Arc::clone(&source),
+        };
+        if source.metas().is_empty() {
+            session.complain(format!("{} has no episodes", source.name()));
+        } else {
+            match worker::spawn(shared, source, models) {
+                Ok(worker) => session.worker = Some(worker),
+                Err(error) => {
+                    session.complain(format!("cannot start a thread to compute on: {error}"));
+                }
+            }
+        }
+        session.settle(0);
+        session
+    }
+
+    /// Does what a user asks. A refusal changes nothing but the message.
+    pub fn apply(&mut self, command: Command) {
+        let cursor = self.playback.cursor;
+        self.message = None;
+        if self.opened().is_some() || !waits_for_episode(&command) {
+            self.perform(command);
+        } else if !self.is_busy() {
+            self.complain("no episode is open".to_owned());
+        } else if self.pending.len() < MOST_PENDING {
+            self.pending.push_back(Pending::Command(command));
+        }
+        self.settle(cursor);
+    }
+
+    /// Lets time go by: takes in what has been computed and plays on. True if the snapshot is another one than
+    /// after the last update.
+    pub fn update(&mut self, dt: Duration) -> bool {
+        let cursor = self.playback.cursor;
+        let mut changed = self.collect();
+        if let Some(opened) = self.opened().map(Arc::clone) {
+            changed |= self.playback.update(dt, &opened.view.secs);
+        }
+        if changed {
+            self.settle(cursor);
+        }
+        std::mem::take(&mut self.news)
+    }
+
+    /// Everything a face may show.
+    pub fn snapshot(&self) -> Snapshot {
+        self.shown.clone()
+    }
+
+    /// When `update` has something to do again; none while nothing plays and nothing is computed.
+    pub fn next_wake(&self) -> Option<Duration> {
+        let secs = self.opened().map_or(&[][..], |opened| &opened.view.secs);
+        let computing = self.is_busy().then_some(POLL);
+        let playing = self.playback.next_step_in(secs);
+        computing.into_iter().chain(playing).min()
+    }
+
+    /// Has `wake` called, on another thread, whenever something has been computed.
+    pub fn set_waker(&mut self, wake: Box<dyn Fn() + Send>) {
+        let mut waker = self
+            .shared
+            .waker
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        *waker = Some(wake);
+    }
+
+    /// Waits until everything asked for has been computed; false if that takes longer than `timeout`.
+    pub fn wait_idle(&mut self, timeout: Duration) -> bool {
+        let deadline = Instant::now() + timeout;
+        while self.is_busy() {
+            let Some(answer) = self.shared.answers.wait_until(deadline) else {
+                return false;
+            };
+            let cursor = self.playback.cursor;
+            if self.take_in(answer) {
+                self.settle(cursor);
+            }
+        }
+        true
+    }
+
+    /// Shows a line to the user that did not come from a command.
+    pub fn say(&mut self, message: Message) {
+        self.message = Some(message);
+        self.refresh();
+    }
+
+    /// The model under the cursor.
+    fn model(&self) -> Option<&Arc<ModelInfo>> {
+        self.models.get(self.target.model)
+    }
+
+    /// What there is of the present model and episode; after a switch, of the switches before it until the new
+    /// beliefs are there.
+    fn answered(&self) -> Option<&Answer> {
+        self.answer
+            .as_ref()
+            .filter(|answer| answer.target == self.target)
+    }
+
+    fn opened(&self) -> Option<&Arc<Opened>> {
+        self.answered()?.opened.as_ref()
+    }
+
+    fn is_busy(&self) -> bool {
+        let is_done = |answer: &Answer| answer.done && answer.generation == self.generation;
+        self.worker.is_some() && !self.answer.as_ref().is_some_and(is_done)
+    }
+
+    fn inform(&mut self, text: String) {
+        self.message = Some(Message { error: false, text });
+    }
+
+    fn complain(&mut self, text: String) {
+        self.message = Some(Message { error: true, text });
+    }
+
+    /// Takes what the worker has left; true if there was anything of use.
+    fn collect(&mut self) -> bool {
+        let answer = self.shared.answers.take();
+        answer.is_some_and(|answer| self.take_in(answer))
+    }
+
+    /// Drops an answer to an earlier request; else does what waited for its episode.
+    fn take_in(&mut self, answer: Answer) -> bool {
+        if answer.generation != self.generation {
+            return false;
+        }
+        let steps = answer.opened.as_ref().map(|opened| opened.steps());
+        let failed = answer.done;
+        self.answer = Some(answer);
+        if let Some(steps) = steps {
+            if self.playback.cursor >= steps {
+                self.playback.seek(steps, steps);
+            }
+            for pending in std::mem::take(&mut self.pending) {
+                match pending {
+                    Pending::Command(command) => self.perform(command),
+                    Pending::Restoration(restoration) => self.finish(restoration),
+                }
+            }
+        } else if failed {
+            self.pending.clear();
+        }
+        true
+    }
+
+    /// Asks for what is wanted now and is not yet asked for, and shows the new state.
+    fn settle(&mut self, cursor_before: usize) {
+        let wanted = Wanted {
+            target: self.target,
+            switches: self.settings.switches.clone(),
+            context: self.settings.context,
+            horizon: self.settings.horizon,
+        };
+        let is_new = self.wanted.as_ref() != Some(&wanted);
+        let moved = self.playback.cursor != cursor_before;
+        if is_new {
+            self.generation += 1;
+            self.wanted = Some(wanted);
+        }
+        if is_new || (moved && self.is_busy()) {
+            self.shared.requests.put(Request {
+                generation: self.generation,
+                target: self.target,
+                settings: self.settings.clone(),
+                cursor: self.playback.cursor,
+            });
+        }
+        self.refresh();
+    }
+
+    fn refresh(&mut self) {
+        self.shown = self.show();
+        self.news = true;
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.shared.requests.close();
+        if let Some(worker) = self.worker.take() {
+            // The worker catches panics; one that got past it has nothing left to tell.
+            let _ = worker.join();
+        }
+    }
+}
+
+/// Whether a command needs to know the episode's steps.
+fn waits_for_episode(command: &Command) -> bool {
+    !matches!(
+        command,
+        Command::TogglePlay
+            | Command::Speed(_)
+            | Command::CycleLoop
+            | Command::Episode(_)
+            | Command::SelectEpisode(_)
+            | Command::SelectModel(_)
+            | Command::Restore(_)
+    )
+}

@@ -1,6 +1,128 @@
-//! stub
+//! `poescope eval`: open-loop prediction of a model, horizon by horizon, beside the trivial predictors.
+
+use std::io::Write;
+
+use anyhow::{Context, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::sample;
 use crate::cli::EvalArgs;
+use crate::data::Dataset;
+use crate::episode::EpisodeSource;
+use crate::eval::{self, Protocol, Report};
+use crate::model::checkpoint;
+use crate::model::inspect::Inspector;
+use crate::model::observation::{self, suits};
+
 /// Runs it.
-pub fn run(_args: &EvalArgs) -> anyhow::Result<()> {
-    anyhow::bail!("not yet")
+pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
+    let folder = sample::model(args.model.as_ref())?;
+    let (model, _) = checkpoint::load(&folder)?;
+    let mean_path = folder.join(checkpoint::MEAN_FRAME);
+    let mean_frame = image::open(&mean_path)
+        .with_context(|| {
+            format!(
+                "{}: the mean training frame; train writes it",
+                mean_path.display()
+            )
+        })?
+        .into_luma8();
+    let mean_frame: Vec<f32> = mean_frame
+        .into_raw()
+        .into_iter()
+        .map(|p| f32::from(p) / 255.0)
+        .collect();
+    let path = sample::data(args.data.as_ref())?;
+    let dataset = Dataset::open(&path)?;
+    let protocol = Protocol {
+        context: args.context,
+        horizon: args.horizon,
+    };
+    let config = &model.config;
+    if protocol.context <= config.frame_stack || protocol.horizon == 0 {
+        bail!(
+            "--context must be more than {} and --horizon more than 0",
+            config.frame_stack
+        );
+    }
+    if mean_frame.len() != config.frame_size * config.frame_size {
+        bail!(
+            "{} is not {1} x {1} pixels",
+            mean_path.display(),
+            config.frame_size
+        );
+    }
+    let mut episodes = Vec::new();
+    for (index, split) in dataset.splits(0).into_iter().enumerate() {
+        if split != args.split {
+            continue;
+        }
+        let episode = dataset.load(index, config.layout())?;
+        let missing = observation::missing(config, &episode);
+        if !missing.is_empty() {
+            bail!(
+                "{}: episode `{}` lacks {}",
+                path.display(),
+                episode.meta.id,
+                missing.join(", ")
+            );
+        }
+        suits(config, &episode)?;
+        if episode.steps() >= protocol.context + protocol.horizon {
+            episodes.push(episode);
+        }
+    }
+    let bar = ProgressBar::new(episodes.len() as u64);
+    bar.set_style(ProgressStyle::with_template(
+        "scoring {bar:30} {pos}/{len} episodes",
+    )?);
+    let report = eval::report(
+        &Inspector::new(model)?,
+        &episodes,
+        &mean_frame,
+        protocol,
+        || bar.inc(1),
+    )?;
+    bar.finish_and_clear();
+    let Some(report) = report else {
+        bail!(
+            "{}: no episode of split `{}` with {} images or more; choose another --split, --context or --horizon",
+            path.display(),
+            args.split.name(),
+            protocol.context + protocol.horizon
+        );
+    };
+    let text = if args.json {
+        serde_json::to_string_pretty(&report)? + "\n"
+    } else {
+        markdown(&report)
+    };
+    std::io::stdout()
+        .write_all(text.as_bytes())
+        .context("writing to standard output")
+}
+
+/// The report as a Markdown table.
+fn markdown(report: &Report) -> String {
+    let mut text = format!(
+        "`{}`, {} episodes, context {}, PSNR in dB, differences with paired 95 % bootstrap intervals\n\n\
+         | horizon | model | last frame held | mean frame | over held | over mean frame |\n\
+         | --: | --: | --: | --: | --: | --: |\n",
+        report.model, report.episodes, report.protocol.context
+    );
+    for row in &report.rows {
+        let interval = |i: crate::measure::bootstrap::Interval| {
+            format!("{:+.2} [{:+.2}, {:+.2}]", i.mean, i.low, i.high)
+        };
+        text += &format!(
+            "| {} | {:.2} | {:.2} | {:.2} | {} | {} |\n",
+            row.horizon,
+            row.model_db,
+            row.held_db,
+            row.mean_frame_db,
+            interval(row.over_held),
+            interval(row.over_mean_frame)
+        );
+    }
+    text
 }

@@ -1,6 +1,183 @@
-//! stub
-use crate::cli::ViewArgs;
-/// Runs it.
-pub fn run(_args: ViewArgs) -> anyhow::Result<()> {
-    anyhow::bail!("not yet")
+//! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
+
+use std::io::{self, IsTerminal, Write};
+use std::sync::Arc;
+use std::time::Duration;
+
+use anyhow::{Context, bail};
+use crossterm::terminal::size as terminal_size;
+use ratatui::layout::Size;
+use ratatui_image::picker::ProtocolType;
+
+use super::sample;
+use crate::cli::{ImageProtocol, ViewArgs};
+use crate::data::Dataset;
+use crate::episode::EpisodeSource;
+use crate::model::checkpoint;
+use crate::model::observation::suits;
+use crate::session::Session;
+use crate::session::command::Command;
+use crate::session::keys::{Key, parse_script};
+use crate::session::predict::Predictor;
+use crate::session::trained::Trained;
+use crate::tui::app::{App, Flow};
+use crate::tui::face::Face;
+use crate::tui::print;
+use crate::tui::terminal::{self, Ended, Images};
+use crate::tui::theme::Depth;
+
+/// The longest that one key of `--keys` may have the model compute.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// Opens and shows.
+pub fn run(args: ViewArgs) -> anyhow::Result<()> {
+    let keys = parse_script(args.keys.as_deref().unwrap_or_default()).context("--keys")?;
+    let in_terminal = !args.print && io::stdout().is_terminal();
+    if !in_terminal && !args.print {
+        eprintln!(
+            "poescope: standard output is no terminal, so one frame is drawn as with --print"
+        );
+    }
+    let size = if in_terminal {
+        terminal_size().unwrap_or(args.size)
+    } else {
+        args.size
+    };
+    let face = Face {
+        depth: depth(in_terminal),
+        ..Face::default()
+    };
+    let mut app = App::new(open(&args)?, face, Size::new(size.0, size.1));
+    if let Some(state) = &args.state {
+        app.session.apply(Command::Restore(state.clone()));
+    }
+    if send(&mut app, &keys)? == Flow::Quit {
+        return Ok(());
+    }
+    if !in_terminal {
+        wait(&mut app)?;
+        return write(&print(&app.session.snapshot(), &app.face, size));
+    }
+    match terminal::run(&mut app, images(args.images)).context("the terminal")? {
+        Ended::Quit => Ok(()),
+        Ended::Signal(signal) => {
+            // The terminal is itself again; now end as the signal asks, so that the caller sees it.
+            signal_hook::low_level::emulate_default_handler(signal).context("ending on a signal")
+        }
+    }
+}
+
+/// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data.
+fn open(args: &ViewArgs) -> anyhow::Result<Session> {
+    let path = sample::data(args.data.as_ref())?;
+    let dataset = Dataset::open(&path)?;
+    let folders = if args.model.is_empty() {
+        vec![sample::model(None)?]
+    } else {
+        args.model.clone()
+    };
+    let mut models: Vec<Box<dyn Predictor>> = Vec::new();
+    for folder in folders {
+        let (model, probe) = checkpoint::load(&folder)?;
+        let first = dataset.load(0, model.config.layout())?;
+        suits(&model.config, &first).with_context(|| path.display().to_string())?;
+        let source = folder.display().to_string();
+        models.push(Box::new(Trained::new(model, probe, source)?));
+    }
+    Ok(Session::new(Arc::new(dataset), models))
+}
+
+/// Presses the keys one after the other, each once what the one before it asked for has been computed.
+fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
+    for key in keys {
+        wait(app)?;
+        if app.press(key) == Flow::Quit {
+            return Ok(Flow::Quit);
+        }
+    }
+    Ok(Flow::Go)
+}
+
+fn wait(app: &mut App) -> anyhow::Result<()> {
+    if !app.session.wait_idle(PATIENCE) {
+        bail!("the model has not answered within {} s", PATIENCE.as_secs());
+    }
+    Ok(())
+}
+
+/// A printed frame goes to a file or a pager, which says nothing of colours, so only `NO_COLOR` counts there.
+fn depth(in_terminal: bool) -> Depth {
+    let variable = |name: &str| std::env::var(name).ok();
+    match Depth::detect(variable) {
+        depth if in_terminal => depth,
+        _ if variable("NO_COLOR").is_some_and(|value| !value.is_empty()) => Depth::Plain,
+        _ => Depth::True,
+    }
+}
+
+fn images(protocol: ImageProtocol) -> Images {
+    match protocol {
+        ImageProtocol::Auto => Images::Ask,
+        ImageProtocol::Halfblocks => Images::HalfBlocks,
+        ImageProtocol::Kitty => Images::Force(ProtocolType::Kitty),
+        ImageProtocol::Sixel => Images::Force(ProtocolType::Sixel),
+        ImageProtocol::Iterm2 => Images::Force(ProtocolType::Iterm2),
+    }
+}
+
+/// A reader that has seen enough, like `head`, is no error.
+fn write(text: &str) -> anyhow::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(error).context("standard output")
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use super::*;
+    use crate::session::fake::{FakePredictor, FakeSource};
+
+    fn app() -> App {
+        let source = Arc::new(FakeSource::new(3));
+        let session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+        App::new(session, Face::default(), Size::new(80, 24))
+    }
+
+    #[test]
+    fn what_keys_ask_for_is_computed_before_the_next_one() {
+        let mut app = app();
+        let keys = parse_script("lllll 1 p").unwrap();
+        assert_eq!(send(&mut app, &keys).unwrap(), Flow::Go);
+        wait(&mut app).unwrap();
+        let snapshot = app.session.snapshot();
+        assert!(!snapshot.busy);
+        assert_eq!((snapshot.cursor, snapshot.start), (5, 5));
+        assert!(snapshot.experts[0].alpha.abs() < f32::EPSILON);
+    }
+
+    #[test]
+    fn a_key_may_end_it() {
+        let keys = parse_script("lq l").unwrap();
+        assert_eq!(send(&mut app(), &keys).unwrap(), Flow::Quit);
+    }
+
+    #[test]
+    fn a_script_that_cannot_be_read_is_named() {
+        let args = ViewArgs {
+            keys: Some("<nokey>".to_owned()),
+            print: true,
+            ..ViewArgs::default()
+        };
+        let told = format!("{:#}", run(args).unwrap_err());
+        assert!(
+            told.starts_with("--keys: no key is named <nokey>"),
+            "{told}"
+        );
+    }
 }

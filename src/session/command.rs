@@ -60,6 +60,13 @@ pub enum Command {
         /// 0 off, 1 as trained.
         alpha: f32,
     },
+    /// Change the tempering of an expert within the scope by so many tenths.
+    Temper {
+        /// Position in the model's list, the prior last.
+        expert: usize,
+        /// How many tenths; it stops at 0.
+        tenths: i64,
+    },
     /// Next scope: episode, from here on, this frame.
     CycleScope,
     /// Predict open loop from the step under the cursor.

@@ -1,7 +1,10 @@
 //! What crosses folders, one module a theme.
+#![expect(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 mod align;
+mod architecture;
 mod damage;
 mod data;
+mod golden;
 mod info;
 mod opening;

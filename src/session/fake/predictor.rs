@@ -1,0 +1,267 @@
+//! A linear-Gaussian model of the moving square.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::dataset::{TABLE_M, centre_of, square_at};
+use crate::episode::{Episode, Frame, Layout};
+use crate::modality::{Expert, ExpertSet};
+use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
+use crate::session::predict::{PredictError, Predictor};
+use crate::session::snapshot::{Estimate, ModelInfo};
+
+const LATENT: usize = 4;
+/// Variance before anything was seen, and the largest there is: a prior tempered to nearly nothing stays finite.
+const FIRST_VARIANCE: f32 = 20.0;
+/// Variance that one step of the dynamics adds.
+const STEP_VARIANCE: f32 = 0.004;
+/// W of the position probe: metres along x and y of the first two dimensions.
+const WEIGHTS: [f32; 2 * LATENT] = [TABLE_M, 0.0, 0.0, 0.0, 0.0, TABLE_M, 0.0, 0.0];
+
+/// How often a predictor was asked; shared, so that it can be read while the predictor works elsewhere.
+#[derive(Debug, Default)]
+pub struct Calls {
+    encode: AtomicUsize,
+    filter: AtomicUsize,
+}
+
+impl Calls {
+    /// Episodes encoded.
+    pub fn encoded(&self) -> usize {
+        self.encode.load(Ordering::Relaxed)
+    }
+
+    /// Settings of the switches filtered.
+    pub fn filtered(&self) -> usize {
+        self.filter.load(Ordering::Relaxed)
+    }
+}
+
+/// The model.
+#[derive(Debug)]
+pub struct FakePredictor {
+    info: ModelInfo,
+    calls: Arc<Calls>,
+}
+
+impl FakePredictor {
+    /// Vision, haptic and proprio apart, trained on every set: like `v-h-p`.
+    pub fn three() -> Self {
+        let sets = (0..8).map(ExpertSet).collect();
+        Self::new(
+            "v-h-p",
+            &[Expert::Vision, Expert::Haptic, Expert::Proprio],
+            true,
+            sets,
+        )
+    }
+
+    /// Vision and one joint expert, trained with both on: like `vhp`.
+    pub fn joint() -> Self {
+        Self::new(
+            "vhp",
+            &[Expert::Vision, Expert::Joint],
+            true,
+            vec![ExpertSet::full(2)],
+        )
+    }
+
+    /// Vision alone, without a product: like `v`.
+    pub fn vision() -> Self {
+        Self::new("v", &[Expert::Vision], false, vec![ExpertSet::full(1)])
+    }
+
+    fn new(
+        name: &str,
+        experts: &[Expert],
+        prior_expert: bool,
+        trained_sets: Vec<ExpertSet>,
+    ) -> Self {
+        let info = ModelInfo {
+            name: name.to_owned(),
+            source: "made up".to_owned(),
+            experts: experts.to_vec(),
+            latent: LATENT,
+            frame_stack: 1,
+            prior_expert,
+            trained_sets,
+        };
+        Self {
+            info,
+            calls: Arc::default(),
+        }
+    }
+
+    /// Its counters.
+    pub fn calls(&self) -> Arc<Calls> {
+        Arc::clone(&self.calls)
+    }
+
+    fn says(&self, expert: Expert, episode: &Episode) -> Option<GaussianTrace> {
+        let (stack, window) = (self.info.frame_stack, episode.layout.window);
+        let log_var: [f32; LATENT] = match expert {
+            Expert::Vision => [-7.0, -6.0, -1.0, 0.5],
+            Expert::Haptic => [-5.0, -6.5, 0.0, 0.0],
+            Expert::Proprio => [-6.0, -5.0, 0.5, -0.5],
+            Expert::Joint | Expert::Prior => [-6.0, -6.0, 0.0, 0.0],
+        };
+        let mut trace = GaussianTrace {
+            latent: LATENT,
+            ..GaussianTrace::default()
+        };
+        for t in stack..episode.steps() {
+            let [x, y] = match expert {
+                Expert::Vision => centre_of(episode.frames.get(t)?),
+                Expert::Proprio => first_sample(episode.proprio.as_ref()?, t, window)?,
+                _ => first_sample(episode.haptic.as_ref()?, t, window)?,
+            };
+            trace.mean.extend([x, y, 0.3, -0.2]);
+            trace.log_var.extend(log_var);
+        }
+        Some(trace)
+    }
+}
+
+fn first_sample(windows: &[f32], step: usize, window: usize) -> Option<[f32; 2]> {
+    let at = step * window * 6;
+    Some([*windows.get(at)?, *windows.get(at + 1)?])
+}
+
+impl Predictor for FakePredictor {
+    fn info(&self) -> &ModelInfo {
+        &self.info
+    }
+
+    fn layout(&self) -> Layout {
+        Layout::default()
+    }
+
+    fn missing(&self, episode: &Episode) -> Vec<String> {
+        let lacks = |expert: &&Expert| self.says(**expert, episode).is_none();
+        self.info
+            .experts
+            .iter()
+            .filter(lacks)
+            .map(|expert| expert.name().to_owned())
+            .collect()
+    }
+
+    fn encode(&self, episode: &Episode) -> Result<ExpertTrace, PredictError> {
+        self.calls.encode.fetch_add(1, Ordering::Relaxed);
+        let says = |&expert: &Expert| {
+            let missing = || PredictError(format!("no {}", expert.name()));
+            self.says(expert, episode).ok_or_else(missing)
+        };
+        let experts = self
+            .info
+            .experts
+            .iter()
+            .map(says)
+            .collect::<Result<_, _>>()?;
+        let controls = episode
+            .controls
+            .iter()
+            .flatten()
+            .skip(self.info.frame_stack);
+        Ok(ExpertTrace {
+            experts,
+            controls: controls.copied().collect(),
+        })
+    }
+
+    fn filter(&self, trace: &ExpertTrace, alphas: &Alphas) -> Result<BeliefTrace, PredictError> {
+        self.calls.filter.fetch_add(1, Ordering::Relaxed);
+        let count = trace.experts.first().map_or(0, GaussianTrace::len);
+        let empty = || GaussianTrace {
+            latent: LATENT,
+            ..GaussianTrace::default()
+        };
+        let (mut prior, mut posterior) = (empty(), empty());
+        let (mut mean, mut variance) = ([0.0_f32; LATENT], [FIRST_VARIANCE; LATENT]);
+        for i in 0..count {
+            prior.mean.extend(mean);
+            prior.log_var.extend(variance.map(f32::ln));
+            let alpha = alphas.row(i);
+            let prior_alpha =
+                alpha.last().copied().unwrap_or(1.0) * f32::from(u8::from(self.info.prior_expert));
+            for d in 0..LATENT {
+                let (mut precision, mut weighted) = (
+                    prior_alpha / variance[d],
+                    prior_alpha * mean[d] / variance[d],
+                );
+                for (expert, alpha) in trace.experts.iter().zip(alpha) {
+                    let (means, log_vars) = expert.row(i);
+                    let share = alpha * (-log_vars[d]).exp();
+                    precision += share;
+                    weighted += share * means[d];
+                }
+                (mean[d], variance[d]) = (weighted / precision, 1.0 / precision);
+            }
+            posterior.mean.extend(mean);
+            posterior.log_var.extend(variance.map(f32::ln));
+            advance(&mut mean, &mut variance, trace.controls.get(i));
+        }
+        Ok(BeliefTrace {
+            prior,
+            posterior,
+            hidden: Vec::new(),
+        })
+    }
+
+    fn rollout(
+        &self,
+        trace: &ExpertTrace,
+        beliefs: &BeliefTrace,
+        from: usize,
+        horizon: usize,
+    ) -> Result<GaussianTrace, PredictError> {
+        let (means, log_vars) = beliefs.posterior.row(from);
+        let (mut mean, mut variance) = ([0.0; LATENT], [0.0; LATENT]);
+        mean.copy_from_slice(means);
+        variance.copy_from_slice(log_vars);
+        variance = variance.map(f32::exp);
+        let mut rollout = GaussianTrace {
+            latent: LATENT,
+            ..GaussianTrace::default()
+        };
+        for i in from..from + horizon {
+            advance(&mut mean, &mut variance, trace.controls.get(i));
+            rollout.mean.extend(mean);
+            rollout.log_var.extend(variance.map(f32::ln));
+        }
+        Ok(rollout)
+    }
+
+    fn decode(&self, latents: &[f32]) -> Result<Vec<Frame>, PredictError> {
+        let size = self.layout().frame_size;
+        let frames = latents
+            .chunks_exact(LATENT)
+            .map(|z| square_at([z[0], z[1]], size));
+        Ok(frames.collect())
+    }
+
+    fn position(&self, mean: &[f32], log_var: &[f32]) -> Option<Estimate> {
+        let [x, y, ..] = mean else { return None };
+        let [vx, vy, ..] = log_var else { return None };
+        let scale = TABLE_M * TABLE_M;
+        Some(Estimate {
+            x: x * TABLE_M,
+            y: y * TABLE_M,
+            covariance: [vx.exp() * scale, 0.0, vy.exp() * scale],
+        })
+    }
+
+    fn position_weights(&self) -> Option<&[f32]> {
+        Some(&WEIGHTS)
+    }
+}
+
+/// One step of the dynamics: the square goes where the control says, a little less surely.
+fn advance(mean: &mut [f32; LATENT], variance: &mut [f32; LATENT], control: Option<&[f32; 2]>) {
+    let [x, y] = control.copied().unwrap_or_default();
+    mean[0] += x;
+    mean[1] += y;
+    for v in variance {
+        *v = (*v + STEP_VARIANCE).min(FIRST_VARIANCE);
+    }
+}

@@ -1,0 +1,199 @@
+//! Each command's effect on the session.
+
+use std::sync::Arc;
+
+use super::Session;
+use super::command::{Command, Looping, Scope};
+use super::fusing::{self, Place, Refusal};
+use super::settings::Settings;
+use super::snapshot::ModelInfo;
+use super::switches::{Reach, Switches};
+use super::worker::Target;
+use crate::modality::Expert;
+
+impl Session {
+    /// Carries out a command whose episode is there if it needs one.
+    pub(super) fn perform(&mut self, command: Command) {
+        let steps = self.opened().map_or(0, |opened| opened.steps());
+        match command {
+            Command::TogglePlay => self.playback.toggle(steps),
+            Command::Step(by) => self.playback.step(by, steps),
+            Command::SeekTo(step) if (1..=steps).contains(&step) => {
+                self.playback.seek(step - 1, steps);
+            }
+            Command::SeekTo(step) => self.complain(format!("step {step} is outside 1 to {steps}")),
+            Command::SeekClamped(step) => self.playback.seek(step, steps),
+            Command::First => self.playback.seek(0, steps),
+            Command::Last => self.playback.seek(steps, steps),
+            Command::Episode(by) => self.go_episodes(by),
+            Command::SelectEpisode(index) => self.select_episode(index),
+            Command::SelectModel(index) => self.select_model(index),
+            Command::ToggleExpert(position) => {
+                self.switch(|model, switches, place| {
+                    fusing::toggle(model, switches, place, position)
+                });
+            }
+            Command::Solo(position) => {
+                self.switch(|model, switches, place| {
+                    fusing::solo(model, switches, place, position)
+                });
+            }
+            Command::SetAlpha { expert, alpha } => {
+                self.switch(|model, switches, place| {
+                    fusing::temper(model, switches, place, expert, alpha)
+                });
+            }
+            Command::Temper { expert, tenths } => {
+                self.switch(|model, switches, place| {
+                    fusing::temper_by(model, switches, place, expert, tenths)
+                });
+            }
+            Command::AllOn => self.change(|session| {
+                session.settings.switches = Switches::default();
+                Ok("every expert as trained".to_owned())
+            }),
+            Command::CycleScope => self.change(|session| {
+                let (scope, words) = match session.settings.scope {
+                    Scope::Episode => (Scope::Onward, "from the cursor on"),
+                    Scope::Onward => (Scope::Frame, "this step only"),
+                    Scope::Frame => (Scope::Episode, "the whole episode"),
+                };
+                session.settings.scope = scope;
+                Ok(format!("switches reach {words}"))
+            }),
+            Command::PredictHere => {
+                let context = self.playback.cursor + 1;
+                self.change(|session| session.set_context(context));
+            }
+            Command::SetContext(context) => self.change(|session| session.set_context(context)),
+            Command::Context(by) => self.change(|session| Ok(session.change_context(by))),
+            Command::SetHorizon(horizon) => self.change(|session| session.set_horizon(horizon)),
+            Command::Horizon(by) => self.change(|session| Ok(session.change_horizon(by))),
+            Command::Speed(by) => {
+                self.playback.change_speed(by);
+                self.inform(format!("speed {}", self.playback.speed()));
+            }
+            Command::CycleLoop => {
+                let (looping, words) = match self.playback.looping {
+                    Looping::Off => (Looping::All, "loops"),
+                    Looping::All => (Looping::Off, "stops at the end"),
+                };
+                self.playback.looping = looping;
+                self.inform(words.to_owned());
+            }
+            Command::Undo => {
+                let before = self.history.undo(&self.settings);
+                self.travel(before, "undo");
+            }
+            Command::Redo => {
+                let after = self.history.redo(&self.settings);
+                self.travel(after, "redo");
+            }
+            Command::Restore(text) => self.restore(&text),
+        }
+    }
+
+    /// Edits the settings so that it can be undone; tells what came of it.
+    pub(super) fn change(&mut self, edit: impl FnOnce(&mut Self) -> Result<String, Refusal>) {
+        let before = self.settings.clone();
+        match edit(self) {
+            Ok(text) => self.inform(text),
+            Err(why) => self.complain(why),
+        }
+        if self.settings != before {
+            self.history.record(before);
+        }
+    }
+
+    /// Goes to another model or episode; switches keep their experts by name.
+    pub(super) fn go_to(&mut self, target: Target) {
+        self.target = target;
+        self.repair();
+    }
+
+    fn switch(
+        &mut self,
+        edit: impl FnOnce(&ModelInfo, &mut Switches, Place) -> Result<String, Refusal>,
+    ) {
+        self.change(|session| {
+            let Some(model) = session.model().map(Arc::clone) else {
+                return Err("no model is loaded".to_owned());
+            };
+            let place = Place {
+                scope: session.settings.scope,
+                step: session.playback.cursor.max(model.frame_stack),
+            };
+            edit(&model, &mut session.settings.switches, place)
+        });
+    }
+
+    fn travel(&mut self, settings: Option<Settings>, verb: &str) {
+        if let Some(settings) = settings {
+            self.settings = settings;
+            self.inform(format!("{verb}: done"));
+            self.repair();
+        } else {
+            self.inform(format!("nothing to {verb}"));
+        }
+    }
+
+    /// Switches from another model may leave this one without an active expert somewhere: then all come on.
+    pub(super) fn repair(&mut self) {
+        let Some(model) = self.model().map(Arc::clone) else {
+            return;
+        };
+        let factors = model.factors();
+        if model.has_product() && self.settings.switches.first_silent_step(&factors).is_some() {
+            self.change(|session| {
+                for &expert in &factors {
+                    session.settings.switches.set(expert, Reach::EPISODE, 1.0);
+                }
+                let names: Vec<&str> = factors.iter().copied().map(Expert::name).collect();
+                Ok(format!(
+                    "{} on again: nothing else was active in {}",
+                    names.join(", "),
+                    model.name
+                ))
+            });
+        }
+    }
+
+    fn go_episodes(&mut self, by: i64) {
+        let last = self.source.metas().len().saturating_sub(1);
+        let by = isize::try_from(by).unwrap_or(if by < 0 { isize::MIN } else { isize::MAX });
+        let episode = self.target.episode.saturating_add_signed(by).min(last);
+        if episode == self.target.episode {
+            let end = if by < 0 { "first" } else { "last" };
+            self.inform(format!("this is the {end} episode"));
+        } else {
+            self.go_to(Target {
+                episode,
+                ..self.target
+            });
+        }
+    }
+
+    fn select_episode(&mut self, episode: usize) {
+        let count = self.source.metas().len();
+        if episode < count {
+            self.go_to(Target {
+                episode,
+                ..self.target
+            });
+        } else {
+            self.complain(format!("episode {} is outside 1 to {count}", episode + 1));
+        }
+    }
+
+    fn select_model(&mut self, model: usize) {
+        let count = self.models.len();
+        if model < count {
+            self.go_to(Target {
+                model,
+                ..self.target
+            });
+        } else {
+            self.complain(format!("model {} is outside 1 to {count}", model + 1));
+        }
+    }
+}

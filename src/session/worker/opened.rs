@@ -1,0 +1,51 @@
+//! An episode as the session shows it: shared pieces, made once.
+
+use std::sync::Arc;
+
+use crate::episode::{Episode, Frame, PlanarPose};
+use crate::session::snapshot::EpisodeView;
+
+/// What does not depend on any model's answer.
+#[derive(Debug)]
+pub struct Opened {
+    /// What faces say of it.
+    pub view: Arc<EpisodeView>,
+    /// What was recorded, one a step.
+    pub truth: Vec<Arc<Frame>>,
+    /// Ground truth; empty if not recorded.
+    pub poses: Arc<Vec<PlanarPose>>,
+    /// End-effector positions; empty if not recorded.
+    pub tip: Arc<Vec<[f32; 2]>>,
+}
+
+impl Opened {
+    /// Shares the pieces of an episode; `missing` are the roles the model lacks.
+    pub fn new(episode: &Episode, missing: Vec<String>) -> Self {
+        let steps = episode.steps();
+        let force_newtons = (0..steps).map_while(|t| episode.force_newtons(t)).collect();
+        let view = EpisodeView {
+            id: episode.meta.id.clone(),
+            split: episode.meta.split,
+            source: episode.meta.source.clone(),
+            secs: (0..steps).map(|t| episode.secs_at(t)).collect(),
+            force_newtons,
+            flags: episode
+                .flags
+                .iter()
+                .map(|flag| format!("{}: {}", flag.topic, flag.what))
+                .collect(),
+            missing,
+        };
+        Self {
+            view: Arc::new(view),
+            truth: episode.frames.iter().cloned().map(Arc::new).collect(),
+            poses: Arc::new(episode.object.clone().unwrap_or_default()),
+            tip: Arc::new(episode.tip.clone().unwrap_or_default()),
+        }
+    }
+
+    /// T.
+    pub fn steps(&self) -> usize {
+        self.truth.len()
+    }
+}

@@ -1,0 +1,60 @@
+//! When a run ends, and the learning rate on the way there.
+
+use std::time::Duration;
+
+use crate::model::config::Training;
+
+/// When a run ends: whichever comes first.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Budget {
+    /// Epochs over the training set.
+    pub epochs: Option<usize>,
+    /// Minutes of training over all sittings; with this a run depends on the machine's speed.
+    pub minutes: Option<f64>,
+}
+
+impl Budget {
+    /// The part that is used, 1 at the end; 0 without any limit.
+    pub fn fraction(&self, updates: u64, epoch_updates: u64, elapsed: Duration) -> f64 {
+        let by_epochs = self
+            .epochs
+            .map(|epochs| updates as f64 / (epochs as u64 * epoch_updates) as f64);
+        let by_minutes = self
+            .minutes
+            .map(|minutes| elapsed.as_secs_f64() / (minutes * 60.0));
+        by_epochs.into_iter().chain(by_minutes).fold(0.0, f64::max)
+    }
+}
+
+/// The rate rises along a line over the warm-up and falls along a cosine over the budget.
+pub fn learning_rate(training: &Training, update: u64, fraction: f64) -> f64 {
+    let rise = ((update + 1) as f64 / training.warm_up.max(1) as f64).min(1.0);
+    let cosine = 0.5 * (1.0 + (std::f64::consts::PI * fraction.clamp(0.0, 1.0)).cos());
+    training.learning_rate * rise * (training.final_rate + (1.0 - training.final_rate) * cosine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::config::Config;
+
+    #[test]
+    fn the_rate_rises_then_falls_to_its_part() {
+        let training = Config::named("v-h-p").expect("a known name").training;
+        let peak = learning_rate(&training, training.warm_up as u64, 0.0);
+        assert!((peak - training.learning_rate).abs() < 1e-12);
+        assert!(learning_rate(&training, 0, 0.0) < 0.01 * peak);
+        let end = learning_rate(&training, 1_000_000, 1.0);
+        assert!((end - training.learning_rate * training.final_rate).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_first_limit_reached_counts() {
+        let budget = Budget {
+            epochs: Some(10),
+            minutes: Some(1.0),
+        };
+        assert!((budget.fraction(50, 10, Duration::from_secs(6)) - 0.5).abs() < 1e-12);
+        assert!((budget.fraction(10, 10, Duration::from_secs(30)) - 0.5).abs() < 1e-12);
+    }
+}

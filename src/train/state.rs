@@ -1,0 +1,153 @@
+//! A run that can be put down and taken up again: weights, moments and counters in one file, written atomically.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io::Write;
+use std::path::Path;
+use std::time::Duration;
+
+use candle_core::{DType, Device, Tensor};
+use serde::{Deserialize, Serialize};
+
+use super::{Progress, TrainError};
+use crate::model::Model;
+use crate::model::checkpoint::{self, CheckpointError};
+use crate::model::kernel::adam::Moments;
+
+/// The file that a run is resumed from.
+pub const STATE: &str = "state.safetensors";
+/// The file that metrics are appended to, one JSON object a line.
+pub const METRICS: &str = "metrics.jsonl";
+
+/// Where a run is.
+#[derive(Debug, Default)]
+pub struct State {
+    /// Updates so far.
+    pub update: u64,
+    /// Time trained, over all sittings.
+    pub elapsed: Duration,
+    /// Adam's, by network.
+    pub moments: BTreeMap<String, Moments>,
+}
+
+/// What is stored beside the tensors.
+#[derive(Serialize, Deserialize)]
+struct Counters {
+    update: u64,
+    elapsed_secs: f64,
+    moment_updates: BTreeMap<String, u32>,
+}
+
+impl State {
+    /// Writes the state, and the weights as a checkpoint that can be looked at.
+    pub fn save(&self, model: &Model, folder: &Path) -> Result<(), TrainError> {
+        checkpoint::save(model, folder, DType::F32)?;
+        let mut tensors = Vec::new();
+        for network in model.networks() {
+            tensors.push((
+                format!("{}.theta", network.name),
+                network.theta().as_tensor().clone(),
+            ));
+        }
+        for (name, moments) in &self.moments {
+            let flat = |numbers: &[f32]| Tensor::from_slice(numbers, numbers.len(), &Device::Cpu);
+            tensors.push((format!("{name}.first"), flat(&moments.first)?));
+            tensors.push((format!("{name}.second"), flat(&moments.second)?));
+        }
+        let counters = Counters {
+            update: self.update,
+            elapsed_secs: self.elapsed.as_secs_f64(),
+            moment_updates: self
+                .moments
+                .iter()
+                .map(|(name, moments)| (name.clone(), moments.updates))
+                .collect(),
+        };
+        let path = folder.join(STATE);
+        let refuse = |what: String| CheckpointError::Weights {
+            path: path.clone(),
+            what,
+        };
+        let counters =
+            serde_json::to_string(&counters).map_err(|error| refuse(error.to_string()))?;
+        let metadata = HashMap::from([("counters".to_owned(), counters)]);
+        let bytes = safetensors::serialize(tensors, Some(metadata))
+            .map_err(|error| refuse(error.to_string()))?;
+        checkpoint::write_atomic(&path, &bytes)?;
+        Ok(())
+    }
+
+    /// Reads what [`Self::save`] wrote, and fills the model's parameters.
+    pub fn load(model: &Model, folder: &Path) -> Result<Self, TrainError> {
+        let path = folder.join(STATE);
+        let bytes = std::fs::read(&path).map_err(|source| CheckpointError::File {
+            path: path.clone(),
+            source,
+        })?;
+        let refuse = |what: String| CheckpointError::Weights {
+            path: path.clone(),
+            what,
+        };
+        let (_, header) = safetensors::SafeTensors::read_metadata(&bytes)
+            .map_err(|error| refuse(error.to_string()))?;
+        let counters = header
+            .metadata()
+            .as_ref()
+            .and_then(|metadata| metadata.get("counters"));
+        let counters = counters.ok_or_else(|| refuse("the counters are missing".to_owned()))?;
+        let counters: Counters =
+            serde_json::from_str(counters).map_err(|error| refuse(error.to_string()))?;
+        let tensors = checkpoint::read_tensors(&path)?;
+        let numbers = |name: &str| -> Result<Tensor, CheckpointError> {
+            tensors
+                .get(name)
+                .cloned()
+                .ok_or_else(|| refuse(format!("tensor `{name}` is missing")))
+        };
+        for network in model.networks() {
+            let theta = numbers(&format!("{}.theta", network.name))?;
+            network
+                .theta()
+                .set(&theta)
+                .map_err(|error| refuse(error.to_string()))?;
+        }
+        let mut moments = BTreeMap::new();
+        for (name, updates) in counters.moment_updates {
+            let first = numbers(&format!("{name}.first"))?.to_vec1()?;
+            let second = numbers(&format!("{name}.second"))?.to_vec1()?;
+            moments.insert(
+                name,
+                Moments {
+                    first,
+                    second,
+                    updates,
+                },
+            );
+        }
+        let elapsed = Duration::try_from_secs_f64(counters.elapsed_secs)
+            .map_err(|error| refuse(error.to_string()))?;
+        Ok(Self {
+            update: counters.update,
+            elapsed,
+            moments,
+        })
+    }
+}
+
+/// Appends one line of metrics.
+pub fn append_metrics(folder: &Path, progress: &Progress, rate: f64) -> Result<(), TrainError> {
+    let path = folder.join(METRICS);
+    let line = serde_json::json!({
+        "update": progress.update,
+        "epoch": progress.update / progress.epoch_updates,
+        "elapsed_secs": progress.elapsed.as_secs_f64(),
+        "learning_rate": rate,
+        "train": progress.losses,
+        "val": progress.validation,
+    });
+    std::fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(&path)
+        .and_then(|mut file| writeln!(file, "{line}"))
+        .map_err(|source| CheckpointError::File { path, source }.into())
+}

@@ -1,0 +1,139 @@
+//! What a model takes from its training set before the first update: the scaling of its channels and the weights of
+//! its error terms (`standard` in the dataset format).
+
+use crate::episode::{Episode, HAPTIC_CHANNELS, PROPRIO_CHANNELS};
+use crate::modality::{Expert, Modality};
+use crate::model::config::{Channels, Config};
+
+/// A channel's scale is at least this: 0.1 N and 0.01 N·m, 1 mm and 1 mm/s, so that a channel that never moves is not
+/// blown up.
+const FLOORS: [[f32; 6]; 2] = [[0.1, 0.1, 0.1, 0.01, 0.01, 0.01], [0.001; 6]];
+
+/// Fills in scaling and error weights where the config has none.
+pub fn complete(config: &mut Config, episodes: &[Episode]) {
+    if config.step_secs.is_none() {
+        config.step_secs = episodes.first().and_then(Episode::step_secs);
+    }
+    for modality in [Modality::Haptic, Modality::Proprio] {
+        let haptic = modality == Modality::Haptic;
+        let known = if haptic {
+            HAPTIC_CHANNELS
+        } else {
+            PROPRIO_CHANNELS
+        };
+        let channels = if haptic {
+            &mut config.haptic
+        } else {
+            &mut config.proprio
+        };
+        if channels.mean.is_empty() {
+            let windows = episodes.iter().filter_map(|e| {
+                if haptic {
+                    e.haptic.as_ref()
+                } else {
+                    e.proprio.as_ref()
+                }
+            });
+            scale(channels, &known, &FLOORS[usize::from(!haptic)], windows);
+        }
+    }
+    if config.training.error_weights.is_empty() {
+        let frame = frame_variance(episodes) * (config.frame_stack + 1) as f64;
+        let window: f64 = config
+            .experts
+            .iter()
+            .map(|&expert| window_variance(config, expert, episodes))
+            .sum();
+        // All windows together count as much as the frame, at the predictor that always says the mean.
+        let shared = if window > 0.0 {
+            (frame / window) as f32
+        } else {
+            1.0
+        };
+        let weight = |&expert: &Expert| {
+            if expert == Expert::Vision {
+                1.0
+            } else {
+                shared
+            }
+        };
+        config.training.error_weights = config.experts.iter().map(weight).collect();
+    }
+}
+
+/// Mean and standard deviation of each of six channels over `(…, 6)` windows.
+fn moments<'a>(windows: impl Iterator<Item = &'a Vec<f32>>) -> [(f64, f64); 6] {
+    let (mut count, mut sum, mut squares) = (0_usize, [0.0_f64; 6], [0.0_f64; 6]);
+    for sample in windows.flat_map(|window| window.chunks_exact(6)) {
+        count += 1;
+        for ((sum, square), &x) in sum.iter_mut().zip(&mut squares).zip(sample) {
+            *sum += f64::from(x);
+            *square += f64::from(x) * f64::from(x);
+        }
+    }
+    let n = count.max(1) as f64;
+    std::array::from_fn(|i| {
+        let mean = sum[i] / n;
+        (mean, (squares[i] / n - mean * mean).max(0.0).sqrt())
+    })
+}
+
+fn scale<'a>(
+    channels: &mut Channels,
+    known: &[&str],
+    floors: &[f32; 6],
+    windows: impl Iterator<Item = &'a Vec<f32>>,
+) {
+    let moments = moments(windows);
+    let at: Vec<usize> = channels.columns(known).map(|(at, _, _)| at).collect();
+    channels.mean = at.iter().map(|&at| moments[at].0 as f32).collect();
+    channels.scale = at
+        .iter()
+        .map(|&at| (moments[at].1 as f32).max(floors[at]))
+        .collect();
+}
+
+/// Σ over pixels of the variance over all frames, grey in [0, 1].
+fn frame_variance(episodes: &[Episode]) -> f64 {
+    let pixels = episodes
+        .first()
+        .and_then(|e| e.frames.first())
+        .map_or(0, |f| f.pixels.len());
+    let (mut count, mut sum, mut squares) = (0_usize, vec![0_u64; pixels], vec![0_u64; pixels]);
+    for frame in episodes.iter().flat_map(|episode| &episode.frames) {
+        count += 1;
+        for ((sum, square), &x) in sum.iter_mut().zip(&mut squares).zip(&frame.pixels) {
+            *sum += u64::from(x);
+            *square += u64::from(x) * u64::from(x);
+        }
+    }
+    let n = count.max(1) as f64;
+    let variance = |(&sum, &square): (&u64, &u64)| square as f64 / n - (sum as f64 / n).powi(2);
+    sum.iter().zip(&squares).map(variance).sum::<f64>() / (255.0 * 255.0)
+}
+
+/// Σ over samples and channels of a window's scaled variance.
+fn window_variance(config: &Config, expert: Expert, episodes: &[Episode]) -> f64 {
+    let mut total = 0.0;
+    for (channels, modality) in config.channels(expert) {
+        let haptic = modality == Modality::Haptic;
+        let known = if haptic {
+            HAPTIC_CHANNELS
+        } else {
+            PROPRIO_CHANNELS
+        };
+        let windows = episodes.iter().filter_map(|e| {
+            if haptic {
+                e.haptic.as_ref()
+            } else {
+                e.proprio.as_ref()
+            }
+        });
+        let moments = moments(windows);
+        let each = channels
+            .columns(&known)
+            .map(|(at, _, scale)| (moments[at].1 / f64::from(scale)).powi(2));
+        total += each.sum::<f64>() * config.window as f64;
+    }
+    total
+}

@@ -1,0 +1,51 @@
+//! What is measured on `val` after each epoch: the loss on the mean path, and open-loop prediction.
+
+use serde::{Deserialize, Serialize};
+
+use super::TrainError;
+use super::batch::Batch;
+use super::step::{self, Losses};
+use crate::episode::Episode;
+use crate::eval::{self, Protocol};
+use crate::model::Model;
+use crate::model::inspect::Inspector;
+
+/// Scores on `val`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Validation {
+    /// Means over all beliefs, on the mean path with every expert (or the masks of update 0).
+    pub losses: Losses,
+    /// Open-loop PSNR in dB at each horizon, averaged over episodes.
+    pub psnr_db: Vec<f64>,
+}
+
+/// Episodes that a validation looks at, at most: it should cost little beside an epoch.
+const EPISODES: usize = 64;
+
+/// Scores `model` on the first episodes of `val`.
+pub fn validate(model: &Model, val: &[Episode]) -> Result<Validation, TrainError> {
+    let val: Vec<&Episode> = val.iter().take(EPISODES).collect();
+    if val.is_empty() {
+        return Ok(Validation {
+            losses: Losses::default(),
+            psnr_db: Vec::new(),
+        });
+    }
+    let batch = Batch::new(&model.config, &val, 0, 0)?;
+    let (_, losses) = step::loss(model, &batch, false)?;
+    let inspector = Inspector::new(model)?;
+    let protocol = Protocol::for_episode(val[0].steps());
+    let mut sums = vec![0.0; protocol.horizon];
+    for episode in &val {
+        for (sum, mse) in sums
+            .iter_mut()
+            .zip(eval::open_loop_mse(&inspector, episode, protocol)?)
+        {
+            *sum += f64::from(crate::measure::frame::psnr_db_from_mse(mse));
+        }
+    }
+    Ok(Validation {
+        losses,
+        psnr_db: sums.into_iter().map(|sum| sum / val.len() as f64).collect(),
+    })
+}

@@ -1,0 +1,139 @@
+//! The first and the last line: what is open, and what there is to say.
+//!
+//! ```text
+//! sample_data  v-h-p              computing…  episode 3/24  push-00003 test  scope episode
+//! …
+//! ! untrained switches: vision alone was never trained without the prior
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+use super::face::Face;
+use super::paint::{right, text, width};
+use super::theme::{WARNING, dim, strong};
+use crate::session::command::Scope;
+use crate::session::snapshot::{Badge, Snapshot};
+
+/// Draws the first line.
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let mut at = text(buf, pane, 0, 0, &snapshot.dataset, strong());
+    if let Some(model) = snapshot.models.get(snapshot.model) {
+        at = text(buf, pane, at + 2, 0, &model.name, strong());
+        if snapshot.models.len() > 1 {
+            let of = format!("{}/{}", snapshot.model + 1, snapshot.models.len());
+            at = text(buf, pane, at + 1, 0, &of, dim());
+        }
+        let source = 2 + width(&model.source);
+        if pane.width >= 110 && at + source < pane.width / 2 {
+            at = text(buf, pane, at + 2, 0, &model.source, dim());
+        }
+    }
+    if let Some(badge) = badge(&snapshot.badge) {
+        at = text(
+            buf,
+            pane,
+            at + 2,
+            0,
+            badge,
+            strong().patch(face.depth.ink(WARNING)),
+        );
+    }
+    if snapshot.busy {
+        at = text(buf, pane, at + 2, 0, "computing…", dim());
+    }
+
+    let scope = match snapshot.scope {
+        Scope::Episode => "scope episode",
+        Scope::Onward => "scope onward",
+        Scope::Frame => "scope frame",
+    };
+    let mut parts = vec![format!(
+        "episode {}/{}",
+        snapshot.episode_index + 1,
+        snapshot.episode_count
+    )];
+    if let Some(episode) = &snapshot.episode {
+        let split = episode.split.map_or("", crate::episode::Split::name);
+        parts.push(format!("{} {split}", episode.id).trim_end().to_owned());
+    }
+    parts.push(scope.to_owned());
+    // Where room is short the episode's name goes first.
+    if parts.len() == 3 && at + 2 + width(&parts.join("  ")) > pane.width {
+        parts.remove(1);
+    }
+    let line = parts.join("  ");
+    if at + 2 + width(&line) <= pane.width {
+        right(buf, pane, pane.width, 0, &line, Style::new());
+    }
+}
+
+/// Draws the last line: what is typed, else the last message, else a warning, else some keys.
+pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let warning = strong().patch(face.depth.ink(WARNING));
+    if let Some(prompt) = &face.prompt {
+        let at = text(buf, pane, 0, 0, prompt, strong());
+        if prompt.starts_with(':') {
+            text(buf, pane, at, 0, "▏", Style::new());
+        }
+        return;
+    }
+    let episode = snapshot.episode.as_deref();
+    if let Some(message) = &snapshot.message {
+        let mut at = 0;
+        if message.error {
+            at = text(buf, pane, 0, 0, "! ", warning);
+        }
+        text(buf, pane, at, 0, &message.text, Style::new());
+    } else if let Some(missing) = episode
+        .map(|episode| &episode.missing)
+        .filter(|missing| !missing.is_empty())
+    {
+        let at = text(buf, pane, 0, 0, "! ", warning);
+        let line = format!(
+            "this recording lacks {}, which the model needs",
+            missing.join(", ")
+        );
+        text(buf, pane, at, 0, &line, Style::new());
+    } else if let Badge::Untrained(why) = &snapshot.badge {
+        let at = text(buf, pane, 0, 0, "! untrained switches: ", warning);
+        text(buf, pane, at, 0, why, Style::new());
+    } else if let Some(flag) = episode.and_then(|episode| episode.flags.first()) {
+        let at = text(buf, pane, 0, 0, "recording: ", dim());
+        text(buf, pane, at, 0, flag, Style::new());
+    } else {
+        hints(buf, pane);
+    }
+}
+
+/// As many keys as there is room for, the way to all the others always among them.
+fn hints(buf: &mut Buffer, pane: Rect) {
+    const KEYS: [(&str, &str); 9] = [
+        ("?", "keys"),
+        ("space", "play"),
+        ("←→", "step"),
+        ("1…9", "switch"),
+        ("s", "scope"),
+        ("p", "predict here"),
+        ("[ ]", "episode"),
+        ("⏎", "zoom"),
+        ("q", "quit"),
+    ];
+    let mut at = 0;
+    for (key, does) in KEYS {
+        if at + width(key) + 1 + width(does) > pane.width {
+            return;
+        }
+        at = text(buf, pane, at, 0, key, Style::new());
+        at = text(buf, pane, at + 1, 0, does, dim()) + 2;
+    }
+}
+
+fn badge(badge: &Badge) -> Option<&'static str> {
+    match badge {
+        Badge::Trained => None,
+        Badge::Untrained(_) => Some("! untrained"),
+        Badge::NoProduct => Some("no product"),
+    }
+}

@@ -1,0 +1,64 @@
+//! Gives the terminal back as it was: when dropped, and before a panic is told.
+
+use std::io::{self, stdout};
+use std::panic;
+use std::thread::{self, ThreadId};
+
+use crossterm::event::{DisableMouseCapture, EnableMouseCapture};
+use crossterm::execute;
+use crossterm::terminal::{
+    EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode,
+    enable_raw_mode,
+};
+use crossterm::{cursor, style};
+
+/// The terminal in raw mode on its other screen, for as long as this lives.
+pub struct Guard(());
+
+impl Guard {
+    /// Takes the terminal over.
+    pub fn enter() -> io::Result<Self> {
+        tell_panics_on_the_usual_screen(thread::current().id());
+        enable_raw_mode()?;
+        // From here on there is something to give back, also if the next line fails.
+        let guard = Self(());
+        execute!(
+            stdout(),
+            EnterAlternateScreen,
+            EnableMouseCapture,
+            cursor::Hide
+        )?;
+        Ok(guard)
+    }
+}
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        give_back();
+        let _ = panic::take_hook();
+    }
+}
+
+/// Every step is tried: a terminal that refuses one of them may still take the next.
+fn give_back() {
+    let _ = execute!(stdout(), EndSynchronizedUpdate, DisableMouseCapture);
+    let _ = execute!(
+        stdout(),
+        style::ResetColor,
+        LeaveAlternateScreen,
+        cursor::Show
+    );
+    let _ = disable_raw_mode();
+}
+
+/// A panic of the face ends it, so it is told once the screen is the usual one again. One on another thread is
+/// caught there and becomes a message; printing it would only tear the picture.
+fn tell_panics_on_the_usual_screen(face: ThreadId) {
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |panic| {
+        if thread::current().id() == face {
+            give_back();
+            usual(panic);
+        }
+    }));
+}

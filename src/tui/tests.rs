@@ -1,0 +1,262 @@
+//! Whole screens after scripts of keys, as text with a hash of each row's styles.
+
+#![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fmt::Write;
+use std::sync::Arc;
+use std::time::Duration;
+
+use rand::Rng;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Size};
+use ratatui::style::Color;
+
+use super::app::{App, Flow, Pointer};
+use super::face::{Face, Focus};
+use super::fixture;
+use super::print::to_text;
+use super::theme::Depth;
+use crate::session::Session;
+use crate::session::fake::{FakePredictor, FakeSource};
+use crate::session::keymap::bindings;
+use crate::session::keys::{Key, parse_script};
+use crate::session::snapshot::{Badge, Message, Snapshot};
+
+const SMALL: (u16, u16) = (80, 24);
+const LARGE: (u16, u16) = (120, 40);
+
+fn screen(snapshot: &Snapshot, face: &Face, (columns, rows): (u16, u16)) -> Buffer {
+    let Ok(mut terminal) = Terminal::new(TestBackend::new(columns, rows));
+    let Ok(_) = terminal.draw(|frame| super::draw(frame, snapshot, face));
+    terminal.backend().buffer().clone()
+}
+
+/// The text, then eight hashes a line of what the rows look like besides it.
+fn described(buf: &Buffer) -> String {
+    let mut out = to_text(buf, false);
+    for row in 0..buf.area.height {
+        let mut styles = String::new();
+        for column in 0..buf.area.width {
+            let cell = &buf[(column, row)];
+            write!(styles, "{}/{}/{:?};", cell.fg, cell.bg, cell.modifier).unwrap();
+        }
+        let end = if row % 8 == 7 { '\n' } else { ' ' };
+        write!(out, "{:08x}{end}", crc32fast::hash(styles.as_bytes())).unwrap();
+    }
+    out
+}
+
+fn app(size: (u16, u16)) -> App {
+    let source = Arc::new(FakeSource::new(3));
+    let session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    App::new(session, Face::default(), Size::new(size.0, size.1))
+}
+
+fn settle(app: &mut App) {
+    assert!(app.session.wait_idle(Duration::from_secs(30)));
+}
+
+/// The app after a script of keys, everything computed.
+fn pressed(script: &str, size: (u16, u16)) -> App {
+    let mut app = app(size);
+    for key in parse_script(script).unwrap() {
+        settle(&mut app);
+        assert_eq!(app.press(&key), Flow::Go);
+    }
+    settle(&mut app);
+    app
+}
+
+fn keys(script: &str, size: (u16, u16)) -> String {
+    let app = pressed(script, size);
+    described(&screen(&app.session.snapshot(), &app.face, size))
+}
+
+macro_rules! keys_snapshot {
+    ($name:ident, $script:literal) => {
+        #[test]
+        fn $name() {
+            for size in [SMALL, LARGE] {
+                let name = format!("{}_{}x{}", stringify!($name), size.0, size.1);
+                insta::assert_snapshot!(name, keys($script, size));
+            }
+        }
+    };
+}
+
+keys_snapshot!(at_first, "");
+keys_snapshot!(predicting, "llll llll");
+keys_snapshot!(an_expert_off, "llllllll 1");
+keys_snapshot!(tempering, "lllllll a2---");
+keys_snapshot!(a_line_being_typed, "l:ep");
+keys_snapshot!(frames_alone, "lllllll <enter>");
+keys_snapshot!(experts_alone, "lllllll <tab><enter>");
+keys_snapshot!(position_alone, "lllllll <s-tab><s-tab><enter>");
+keys_snapshot!(the_keys, "?");
+
+#[test]
+fn overview() {
+    let snapshot = fixture::snapshot(8, 16);
+    for size in [SMALL, LARGE, (200, 60)] {
+        let name = format!("overview_{}x{}", size.0, size.1);
+        let shown = screen(&snapshot, &Face::default(), size);
+        insta::assert_snapshot!(name, described(&shown));
+    }
+}
+
+#[test]
+fn a_long_episode_has_a_column_for_each_step() {
+    let shown = screen(&fixture::snapshot(20, 48), &Face::default(), SMALL);
+    insta::assert_snapshot!(described(&shown));
+}
+
+#[test]
+fn untrained_switches_and_errors_are_said() {
+    let mut snapshot = fixture::snapshot(8, 16);
+    snapshot.badge = Badge::Untrained("α 0.5 was never trained".to_owned());
+    let shown = to_text(&screen(&snapshot, &Face::default(), SMALL), false);
+    assert!(shown.contains("! untrained switches: α 0.5 was never trained"));
+    snapshot.message = Some(Message {
+        error: true,
+        text: "there is no step 99".to_owned(),
+    });
+    let shown = to_text(&screen(&snapshot, &Face::default(), SMALL), false);
+    assert!(shown.contains("! there is no step 99"));
+}
+
+#[test]
+fn without_colour_no_cell_has_one() {
+    let face = Face {
+        depth: Depth::Plain,
+        ..Face::default()
+    };
+    let shown = screen(&fixture::snapshot(8, 16), &face, SMALL);
+    let is_plain = |color: Color| color == Color::Reset;
+    assert!(
+        shown
+            .content
+            .iter()
+            .all(|cell| is_plain(cell.fg) && is_plain(cell.bg))
+    );
+    insta::assert_snapshot!(to_text(&shown, false));
+}
+
+#[test]
+fn a_terminal_too_small_says_so() {
+    let shown = screen(&fixture::snapshot(8, 16), &Face::default(), (39, 24));
+    assert!(to_text(&shown, false).starts_with("poescope needs 40x12\n"));
+}
+
+#[test]
+fn the_mouse_seeks_and_switches() {
+    let mut app = pressed("", SMALL);
+    let face = Face::default();
+    let panes = super::panes(
+        ratatui::layout::Rect::new(0, 0, SMALL.0, SMALL.1),
+        &app.session.snapshot(),
+        &face,
+    );
+    app.point(
+        Pointer::Press,
+        Position::new(panes.timeline.x + 7 + 10, panes.timeline.y + 2),
+    );
+    assert_eq!(app.session.snapshot().cursor, 5);
+    app.point(Pointer::Drag, Position::new(79, 0));
+    assert_eq!(app.session.snapshot().cursor, 15);
+    app.point(Pointer::Release, Position::new(79, 0));
+    app.point(Pointer::Drag, Position::new(0, 0));
+    app.point(Pointer::Wheel(-1), Position::new(0, 0));
+    assert_eq!(app.session.snapshot().cursor, 14);
+    app.point(
+        Pointer::Press,
+        Position::new(panes.experts.x + 4, panes.experts.y + 2),
+    );
+    settle(&mut app);
+    let alphas: Vec<f32> = app
+        .session
+        .snapshot()
+        .experts
+        .iter()
+        .map(|view| view.alpha)
+        .collect();
+    assert_eq!(alphas, [1.0, 0.0, 1.0, 1.0]);
+    assert_eq!((app.face.focus, app.face.expert), (Focus::Experts, 1));
+}
+
+#[test]
+fn the_state_string_goes_to_the_clipboard() {
+    let mut app = pressed("lll y", SMALL);
+    let state = app.to_copy.take().unwrap();
+    assert_eq!(state, app.session.snapshot().state);
+    let shown = to_text(&screen(&app.session.snapshot(), &app.face, SMALL), false);
+    assert!(shown.lines().last().unwrap().contains("copied: "));
+}
+
+#[test]
+fn views_come_round() {
+    let mut app = pressed("", SMALL);
+    let mut seen = Vec::new();
+    for _ in 0..6 {
+        app.press(&Key::of_char('v'));
+        seen.push(app.face.zoomed.then_some(app.face.focus));
+    }
+    let mut all: Vec<_> = Focus::ALL.into_iter().map(Some).collect();
+    all.push(None);
+    assert_eq!(seen, all);
+}
+
+#[test]
+fn nothing_panics_at_any_size() {
+    let mut snapshots = vec![
+        fixture::snapshot(8, 16),
+        fixture::snapshot(0, 48),
+        fixture::snapshot(3, 300),
+    ];
+    let mut bare = fixture::snapshot(0, 16);
+    bare.episode = None;
+    bare.position = None;
+    bare.experts.clear();
+    snapshots.push(bare);
+    let mut face = Face::default();
+    for (i, snapshot) in snapshots.iter().enumerate() {
+        let widths = (1..=200_u16).step_by(9);
+        for (width, height) in widths.flat_map(|w| (1..=60_u16).step_by(4).map(move |h| (w, h))) {
+            face.focus = Focus::ALL[usize::from(width + height) % 5];
+            face.zoomed = (width + i as u16).is_multiple_of(3);
+            face.help = (width % 5 == 0).then_some(usize::from(height % 3));
+            face.depth = if height % 2 == 0 {
+                Depth::Plain
+            } else {
+                Depth::Indexed
+            };
+            screen(snapshot, &face, (width, height));
+        }
+    }
+}
+
+#[test]
+fn random_keys_never_panic() {
+    let mut rng = ChaCha8Rng::seed_from_u64(2);
+    let names: Vec<&str> = bindings()
+        .iter()
+        .flat_map(|binding| binding.keys)
+        .copied()
+        .collect();
+    let mut app = app(SMALL);
+    for i in 0..400 {
+        let size = (rng.random_range(1..=200), rng.random_range(1..=60));
+        app.resize(Size::new(size.0, size.1));
+        let key = Key::of_spelling(names[rng.random_range(0..names.len())]).unwrap();
+        app.press(&key);
+        let at = Position::new(rng.random_range(0..size.0), rng.random_range(0..size.1));
+        app.point(Pointer::Press, at);
+        if i % 20 == 0 {
+            settle(&mut app);
+        }
+        screen(&app.session.snapshot(), &app.face, size);
+    }
+}

@@ -1,0 +1,139 @@
+//! How colours reach the terminal: as given, by the nearest of 256, or not at all.
+//!
+//! Nothing needs hue. Where a terminal has no colours to spare, letters and fills say the same.
+
+use ratatui::style::{Color, Modifier, Style};
+
+/// An sRGB colour.
+pub type Rgb = (u8, u8, u8);
+
+/// The prediction's colour: Okabe and Ito's sky blue, which no modality has.
+pub const PREDICTION: Rgb = (0x56, 0xB4, 0xE9);
+/// What asks for attention: Okabe and Ito's vermillion.
+pub const WARNING: Rgb = (0xD5, 0x5E, 0x00);
+
+/// How many colours there are.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Depth {
+    /// 24 bits.
+    #[default]
+    True,
+    /// The 256 indexed colours: a cube of 216 and a ramp of greys.
+    Indexed,
+    /// Sixteen or none: letters and fills only, images as characters.
+    Plain,
+}
+
+impl Depth {
+    /// What the environment says of the terminal, `NO_COLOR` above all.
+    pub fn detect(variable: impl Fn(&str) -> Option<String>) -> Self {
+        let set = |name: &str| variable(name).filter(|value| !value.is_empty());
+        let term = set("TERM").unwrap_or_default();
+        let direct = [
+            "direct",
+            "truecolor",
+            "kitty",
+            "alacritty",
+            "foot",
+            "wezterm",
+            "ghostty",
+        ];
+        if set("NO_COLOR").is_some() {
+            Self::Plain
+        } else if set("COLORTERM").is_some_and(|value| value == "truecolor" || value == "24bit")
+            || direct.iter().any(|name| term.contains(name))
+        {
+            Self::True
+        } else if term.contains("256") {
+            Self::Indexed
+        } else {
+            Self::Plain
+        }
+    }
+
+    /// This terminal's version of a colour; the terminal's own foreground where there is none.
+    pub fn color(self, rgb: Rgb) -> Color {
+        match self {
+            Self::True => Color::Rgb(rgb.0, rgb.1, rgb.2),
+            Self::Indexed => Color::Indexed(nearest_indexed(rgb)),
+            Self::Plain => Color::Reset,
+        }
+    }
+
+    /// Text or fill in a colour.
+    pub fn ink(self, rgb: Rgb) -> Style {
+        match self {
+            Self::Plain => Style::new(),
+            _ => Style::new().fg(self.color(rgb)),
+        }
+    }
+}
+
+/// Titles and values that matter.
+pub fn strong() -> Style {
+    Style::new().add_modifier(Modifier::BOLD)
+}
+
+/// Labels, units and rules.
+pub fn dim() -> Style {
+    Style::new().add_modifier(Modifier::DIM)
+}
+
+/// The nearest of the 6×6×6 cube and the 24 greys of the 256-colour palette.
+fn nearest_indexed((r, g, b): Rgb) -> u8 {
+    const LEVELS: [u8; 6] = [0, 95, 135, 175, 215, 255];
+    let nearest = |value: u8| {
+        (0..6_u8)
+            .min_by_key(|&i| LEVELS[usize::from(i)].abs_diff(value))
+            .unwrap_or(0)
+    };
+    let distance = |a: Rgb| {
+        let square = |x: u8, y: u8| u32::from(x.abs_diff(y)).pow(2);
+        square(a.0, r) + square(a.1, g) + square(a.2, b)
+    };
+    let cube = [nearest(r), nearest(g), nearest(b)];
+    let [cr, cg, cb] = cube.map(|i| LEVELS[usize::from(i)]);
+    let mean = (u16::from(r) + u16::from(g) + u16::from(b)) / 3;
+    let step = (mean.saturating_sub(3) / 10).min(23) as u8;
+    let grey = 8 + 10 * step;
+    if distance((grey, grey, grey)) < distance((cr, cg, cb)) {
+        232 + step
+    } else {
+        16 + 36 * cube[0] + 6 * cube[1] + cube[2]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn detect(pairs: &[(&str, &str)]) -> Depth {
+        Depth::detect(|name| {
+            let found = pairs.iter().find(|(key, _)| *key == name);
+            found.map(|(_, value)| (*value).to_owned())
+        })
+    }
+
+    #[test]
+    fn no_color_wins_over_what_the_terminal_can() {
+        assert_eq!(detect(&[("COLORTERM", "truecolor")]), Depth::True);
+        assert_eq!(detect(&[("TERM", "xterm-256color")]), Depth::Indexed);
+        assert_eq!(detect(&[("TERM", "linux")]), Depth::Plain);
+        assert_eq!(
+            detect(&[("COLORTERM", "truecolor"), ("NO_COLOR", "1")]),
+            Depth::Plain
+        );
+        assert_eq!(
+            detect(&[("COLORTERM", "truecolor"), ("NO_COLOR", "")]),
+            Depth::True
+        );
+    }
+
+    #[test]
+    fn greys_take_the_ramp_and_corners_the_cube() {
+        assert_eq!(nearest_indexed((0, 0, 0)), 16);
+        assert_eq!(nearest_indexed((255, 255, 255)), 231);
+        assert_eq!(nearest_indexed((128, 128, 128)), 244);
+        assert_eq!(nearest_indexed((255, 0, 0)), 196);
+    }
+}
