@@ -15,7 +15,7 @@ pub fn dispatch(cli: Cli) -> anyhow::Result<()> {
         Command::View(args) => view::run(args),
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run(&args),
-        Command::Train(args) => train::run(args),
+        Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
     }
 }

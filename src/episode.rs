@@ -175,7 +175,7 @@ pub struct Episode {
     pub meta: EpisodeMeta,
     /// The sizes it was laid out in.
     pub layout: Layout,
-    /// τ_t, the stamp of each frame in nanoseconds since the Unix epoch; T of them.
+    /// `τ_t`, the stamp of each frame in nanoseconds since the Unix epoch; T of them.
     pub steps_nanos: Vec<i64>,
     /// T grey frames, each `frame_size` square.
     pub frames: Vec<Frame>,

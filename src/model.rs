@@ -58,6 +58,7 @@ pub struct Weights {
 
 impl Weights {
     /// The same without a gradient.
+    #[must_use]
     pub fn detach(&self) -> Self {
         let all = |weights: &[Tensor]| weights.iter().map(Tensor::detach).collect();
         Self {

@@ -101,7 +101,7 @@ pub enum Outcome {
 }
 
 /// Time between two checkpoints.
-const CHECKPOINT_EVERY: Duration = Duration::from_secs(180);
+const CHECKPOINT_EVERY: Duration = Duration::from_mins(3);
 
 /// Trains `model` from `state` until the budget is used up or it is stopped; leaves a checkpoint either way.
 pub fn run(

@@ -23,6 +23,7 @@ pub mod pixels;
 pub mod terminal;
 pub mod theme;
 
+mod axis;
 mod braille;
 mod experts;
 mod frames;

@@ -1,6 +1,7 @@
 //! `poescope eval`: open-loop prediction of a model, horizon by horizon, beside the trivial predictors.
 
-use std::io::Write;
+use std::fmt::Write as _;
+use std::io::Write as _;
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -114,8 +115,10 @@ fn markdown(report: &Report) -> String {
         let interval = |i: crate::measure::bootstrap::Interval| {
             format!("{:+.2} [{:+.2}, {:+.2}]", i.mean, i.low, i.high)
         };
-        text += &format!(
-            "| {} | {:.2} | {:.2} | {:.2} | {} | {} |\n",
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            text,
+            "| {} | {:.2} | {:.2} | {:.2} | {} | {} |",
             row.horizon,
             row.model_db,
             row.held_db,

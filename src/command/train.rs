@@ -30,7 +30,7 @@ use crate::train::{self, Outcome, Progress, Run, statistics};
 const EPOCHS: usize = 20;
 
 /// Runs it.
-pub fn run(args: TrainArgs) -> anyhow::Result<()> {
+pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new()
             .num_threads(threads.max(1))
@@ -47,7 +47,7 @@ pub fn run(args: TrainArgs) -> anyhow::Result<()> {
         checkpoint::load_config(&args.out.join(checkpoint::CONFIG))
             .with_context(|| format!("nothing to resume in {}", args.out.display()))?
     } else {
-        fresh_config(&args)?
+        fresh_config(args)?
     };
     let dataset = Dataset::open(&args.data)?;
     let sets = load(&dataset, config.layout(), args.seed)?;
@@ -98,7 +98,7 @@ pub fn run(args: TrainArgs) -> anyhow::Result<()> {
     let validation = validate(&model, &sets.val)?;
     finish(&model, &sets, &args.out)?;
     let report = Report {
-        args: &args,
+        args,
         dataset: &dataset,
         sets: &sets,
         state: &state,
@@ -108,7 +108,7 @@ pub fn run(args: TrainArgs) -> anyhow::Result<()> {
     match outcome {
         Outcome::Finished => eprintln!("trained: {}", args.out.display()),
         Outcome::Stopped => {
-            eprintln!("stopped and saved; go on with the same command and --resume")
+            eprintln!("stopped and saved; go on with the same command and --resume");
         }
     }
     Ok(())
@@ -205,9 +205,9 @@ fn show(bar: &ProgressBar, progress: &Progress) {
             losses.vision, losses.kl
         );
         if bar.is_hidden() {
-            eprintln!("{line}")
+            eprintln!("{line}");
         } else {
-            bar.println(line)
+            bar.println(line);
         }
     }
 }
@@ -264,6 +264,12 @@ fn finish(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// What was typed, but for the program's folder.
+fn command_line() -> String {
+    let typed: Vec<String> = std::env::args().skip(1).collect();
+    format!("poescope {}", typed.join(" "))
+}
+
 /// How a checkpoint came to be.
 struct Report<'a> {
     args: &'a TrainArgs,
@@ -278,6 +284,7 @@ impl Report<'_> {
         let updates_of_an_epoch = (self.sets.train.len() / self.model.config.training.batch).max(1);
         let report = json!({
             "poescope": env!("CARGO_PKG_VERSION"),
+            "command": command_line(),
             "model": self.model.config.name,
             "parameters": self.model.parameters(),
             "data": self.dataset.name(),

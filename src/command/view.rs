@@ -27,7 +27,7 @@ use crate::tui::terminal::{self, Ended, Images};
 use crate::tui::theme::Depth;
 
 /// The longest that one key of `--keys` may have the model compute.
-const PATIENCE: Duration = Duration::from_secs(120);
+const PATIENCE: Duration = Duration::from_mins(2);
 
 /// Opens and shows.
 pub fn run(args: ViewArgs) -> anyhow::Result<()> {
@@ -48,8 +48,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         ..Face::default()
     };
     let mut app = App::new(open(&args)?, face, Size::new(size.0, size.1));
-    if let Some(state) = &args.state {
-        app.session.apply(Command::Restore(state.clone()));
+    if let Some(state) = args.state {
+        app.session.apply(Command::Restore(state));
     }
     if send(&mut app, &keys)? == Flow::Quit {
         return Ok(());

@@ -148,8 +148,8 @@ mod tests {
     use candle_core::{Device, Var};
 
     use super::*;
+    use crate::model::kernel::apply::Apply;
     use crate::model::kernel::cell::Cell;
-    use crate::model::kernel::chain::Apply;
     use crate::model::kernel::squared_error::SquaredError;
 
     fn numbers(n: usize, seed: f32) -> Vec<f32> {

@@ -51,7 +51,7 @@ pub fn filter(
         let sensed = sensors.as_ref().map(|sensors| sensors.at(t)).transpose()?;
         let prior_alpha = alphas[switches - 1].narrow(1, t, 1)?.squeeze(1)?;
         let believed = if prior_expert {
-            Evidence::of(&[prior.clone()], &[prior_alpha])?
+            Evidence::of(std::slice::from_ref(prior), &[prior_alpha])?
         } else {
             None
         };

@@ -6,6 +6,7 @@
 //! fused multiply-add, so all three give the same bits. Matrix products differ in the last places between them.
 
 pub mod adam;
+pub mod apply;
 pub mod cell;
 pub mod chain;
 pub mod gather;

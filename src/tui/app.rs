@@ -2,10 +2,10 @@
 
 use ratatui::layout::{Position, Rect, Size};
 
+use super::axis::Axis;
 use super::experts::expert_at;
 use super::face::{Face, Focus};
 use super::help;
-use super::timeline::Axis;
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::input::{Action, Input};

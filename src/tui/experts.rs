@@ -13,6 +13,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::face::{Face, Focus};
+use super::layout::LEFT;
 use super::paint::{bar, right, text};
 use super::theme::{dim, strong};
 use crate::modality::Expert;
@@ -34,7 +35,9 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     text(buf, pane, MARK, 0, "α", dim());
     right(buf, pane, MEAN_END, 0, "|μ|", dim());
     right(buf, pane, SIGMA_END, 0, "σ", dim());
-    text(buf, pane, BAR, 0, "share", dim());
+    if pane.width >= LEFT {
+        text(buf, pane, BAR, 0, "share", dim());
+    }
     right(
         buf,
         pane,

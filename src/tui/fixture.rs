@@ -13,6 +13,14 @@ use crate::session::snapshot::{
 const DIMS: usize = 16;
 const START: usize = 3;
 
+fn predicted(step: usize) -> Option<usize> {
+    (step > START && step <= START + 11).then_some(step)
+}
+
+fn drift(step: usize) -> f32 {
+    (step - START) as f32
+}
+
 /// A number in [0, 1) that looks random, the same everywhere.
 fn noise(seed: usize) -> f32 {
     let hash = (seed as u32).wrapping_mul(2_654_435_761) ^ 0x9E37_79B9;
@@ -101,10 +109,31 @@ const EXPERTS: [(Expert, f32); 4] = [
     (Expert::Prior, 2.0),
 ];
 
+fn position(cursor: usize, steps: usize) -> PositionView {
+    PositionView {
+        truth: Arc::new((0..steps).map(truth).collect()),
+        tip: Arc::new(
+            (0..steps)
+                .map(|t| [truth(t).x - 0.055, truth(t).y - 0.01])
+                .collect(),
+        ),
+        belief: Arc::new(
+            (0..steps)
+                .map(|t| (t > 0).then(|| estimate(t, 0.0)))
+                .collect(),
+        ),
+        prediction: Arc::new(
+            (0..steps)
+                .map(|t| predicted(t).map(|t| estimate(t, drift(t))))
+                .collect(),
+        ),
+        belief_error_m: Some(0.004),
+        prediction_error_m: predicted(cursor).map(|_| 0.012),
+    }
+}
+
 /// The session at a step of an episode of so many.
 pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
-    let predicted = |step: usize| (step > START && step <= START + 11).then_some(step);
-    let drift = |step: usize| (step - START) as f32;
     let (now, belief, prediction) = frames(cursor);
     let prediction = predicted(cursor).map(|_| prediction);
     let shown = prediction.as_ref().unwrap_or(&belief);
@@ -174,26 +203,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
             error: (cursor > 0).then(|| Arc::new(error)),
         },
         strip: Arc::new(strip.collect()),
-        position: Some(PositionView {
-            truth: Arc::new((0..steps).map(truth).collect()),
-            tip: Arc::new(
-                (0..steps)
-                    .map(|t| [truth(t).x - 0.055, truth(t).y - 0.01])
-                    .collect(),
-            ),
-            belief: Arc::new(
-                (0..steps)
-                    .map(|t| (t > 0).then(|| estimate(t, 0.0)))
-                    .collect(),
-            ),
-            prediction: Arc::new(
-                (0..steps)
-                    .map(|t| predicted(t).map(|t| estimate(t, drift(t))))
-                    .collect(),
-            ),
-            belief_error_m: Some(0.004),
-            prediction_error_m: predicted(cursor).map(|_| 0.012),
-        }),
+        position: Some(position(cursor, steps)),
         belief: (cursor > 0).then(|| LatentView {
             mean: (0..DIMS).map(|d| 2.0 * noise(d) - 1.0).collect(),
             sigma: (0..DIMS).map(|d| 0.1 + 0.3 * noise(d + 50)).collect(),

@@ -66,9 +66,10 @@ fn label(buf: &mut Buffer, pane: Rect, slot: &Slot, focused: bool) {
     let name = if short { "pred" } else { slot.name };
     at = text(buf, pane, at, 0, name, slot.style);
     for note in &slot.notes {
-        if at + 1 + width(note) <= pane.width {
-            at = text(buf, pane, at + 1, 0, note, Style::new());
+        if at + 1 + width(note) > pane.width {
+            return;
         }
+        at = text(buf, pane, at + 1, 0, note, Style::new());
     }
 }
 

@@ -12,16 +12,15 @@
 
 use ratatui::layout::Rect;
 
+use super::axis::{LABELS, VALUES};
 use super::face::Focus;
 use super::strip;
 
 /// The smallest screen that is drawn at all.
 pub const SMALLEST: (u16, u16) = (40, 12);
 
-/// Columns of the left label and of the right value in a timeline.
-const TIMELINE_EDGES: u16 = 14;
 /// Columns of the left half of a small screen.
-const LEFT: u16 = 46;
+pub const LEFT: u16 = 47;
 /// Images in the frame row.
 const IMAGES: u16 = 4;
 /// Rows of the smallest timeline: header, track, force, two of shares.
@@ -111,7 +110,7 @@ impl Panes {
         }
         let left_columns = if roomy { 54 } else { LEFT };
         let (left, right) = columns(lower, left_columns, 2);
-        let long = steps > usize::from(left_columns - TIMELINE_EDGES);
+        let long = steps > usize::from(left_columns - LABELS - VALUES);
         if roomy {
             (self.latents, self.position) = columns(right, 24, 2);
         } else {

@@ -5,7 +5,7 @@
 
 use std::cell::RefCell;
 use std::fmt;
-use std::io;
+use std::io::{self, Write};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
@@ -63,9 +63,24 @@ pub fn forced(protocol: ProtocolType) -> Picker {
 fn query() -> Option<Picker> {
     let options = QueryStdioOptions {
         timeout: ANSWER,
+        // Enlarged pixels deflate to a hundredth, which counts over SSH; the encoder's thread has the time.
+        kitty_compression: true,
         ..QueryStdioOptions::default()
     };
-    Picker::from_query_stdio_with_options(options).ok()
+    let picker = Picker::from_query_stdio_with_options(options).ok()?;
+    if picker.capabilities().is_empty() {
+        release_reader();
+    }
+    Some(picker)
+}
+
+/// After a query without an answer, its thread still waits for input and would swallow the user's first keys. A
+/// status report is answered by any terminal, also by a tmux that passed the query on to nobody; it takes that.
+fn release_reader() {
+    let mut out = io::stdout();
+    if out.write_all(b"\x1b[5n").and_then(|()| out.flush()).is_ok() {
+        thread::sleep(ANSWER / 6);
+    }
 }
 
 impl fmt::Debug for Pixels {

@@ -8,14 +8,13 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
+use super::axis::LABELS;
 use super::face::Face;
 use super::paint::{right, text};
 use super::stack::stack;
 use super::theme::dim;
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
-
-const LABELS: u16 = 7;
 
 /// Draws the stacks, with the dimensions' numbers below them where there is room.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {

@@ -28,7 +28,7 @@ pub fn stack(buf: &mut Buffer, pane: Rect, at: u16, shares: &[(Expert, f32)], de
         let floor = f32::from(pane.height - 1 - row);
         let eighths: [Option<Expert>; 8] =
             std::array::from_fn(|i| owner((floor + (i as f32 + 0.5) / 8.0) / height));
-        let (lower, upper) = two_largest(&eighths);
+        let (lower, upper) = two_largest(eighths);
         if depth == Depth::Plain {
             let count = |of: Option<Expert>| eighths.iter().filter(|&&owner| owner == of).count();
             let most = if count(upper) > count(lower) {
@@ -61,9 +61,9 @@ pub fn stack(buf: &mut Buffer, pane: Rect, at: u16, shares: &[(Expert, f32)], de
 }
 
 /// The two that hold most of a cell, the lower one first; a cell has no more than two colours.
-fn two_largest(eighths: &[Option<Expert>; 8]) -> (Option<Expert>, Option<Expert>) {
+fn two_largest(eighths: [Option<Expert>; 8]) -> (Option<Expert>, Option<Expert>) {
     let mut runs: Vec<(Option<Expert>, usize)> = Vec::new();
-    for &owner in eighths {
+    for owner in eighths {
         match runs.last_mut() {
             Some((last, length)) if *last == owner => *length += 1,
             _ => runs.push((owner, 1)),

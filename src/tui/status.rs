@@ -59,9 +59,9 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         parts.push(format!("{} {split}", episode.id).trim_end().to_owned());
     }
     parts.push(scope.to_owned());
-    // Where room is short the episode's name goes first.
-    if parts.len() == 3 && at + 2 + width(&parts.join("  ")) > pane.width {
-        parts.remove(1);
+    // Where room is short the episode's name goes first, then the scope.
+    while parts.len() > 1 && at + 2 + width(&parts.join("  ")) > pane.width {
+        parts.remove(if parts.len() == 3 { 1 } else { parts.len() - 1 });
     }
     let line = parts.join("  ");
     if at + 2 + width(&line) <= pane.width {

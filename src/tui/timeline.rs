@@ -14,6 +14,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
+use super::axis::{Axis, LABELS};
 use super::face::{Face, Focus};
 use super::layout::rows;
 use super::paint::{column, put, right, text};
@@ -23,49 +24,8 @@ use crate::modality::Expert;
 use crate::session::command::Looping;
 use crate::session::snapshot::{Snapshot, StepPsnr};
 
-const LABELS: u16 = 7;
-const VALUES: u16 = 7;
 /// Bars of PSNR go from here to here, in dB.
 const PSNR_RANGE: (f32, f32) = (10.0, 40.0);
-
-/// How steps lie on columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Axis {
-    steps: usize,
-    /// Columns a step takes; 1 where several steps share a column.
-    columns: u16,
-    /// Steps a column takes; 1 wherever they fit.
-    every: usize,
-}
-
-impl Axis {
-    /// The axis of a pane of this width.
-    pub fn of(width: u16, steps: usize) -> Self {
-        let room = width.saturating_sub(LABELS + VALUES).max(1);
-        let columns = (usize::from(room) / steps.max(1)).min(8) as u16;
-        Self {
-            steps,
-            columns: columns.max(1),
-            every: steps.div_ceil(usize::from(room)).max(1),
-        }
-    }
-
-    /// First column of a step.
-    fn column(self, step: usize) -> u16 {
-        LABELS + (step / self.every) as u16 * self.columns
-    }
-
-    /// Columns from the first to the last.
-    fn width(self) -> u16 {
-        (self.steps.div_ceil(self.every)) as u16 * self.columns
-    }
-
-    /// The step drawn at a column of the pane, held to the ends for drags beyond them; none without steps.
-    pub fn step_at(self, column: u16) -> Option<usize> {
-        let step = usize::from(column.saturating_sub(LABELS) / self.columns) * self.every;
-        (self.steps > 0).then(|| step.min(self.steps - 1))
-    }
-}
 
 /// Rows of each part of a timeline, and the blank ones between them.
 #[derive(Default)]
@@ -353,19 +313,6 @@ fn bars(
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_click_on_a_step_gives_that_step() {
-        for (width, steps) in [(46, 16), (78, 48), (40, 300), (8, 3)] {
-            let axis = Axis::of(width, steps);
-            for step in (0..steps).step_by(axis.every) {
-                assert_eq!(axis.step_at(axis.column(step)), Some(step));
-            }
-            assert_eq!(axis.step_at(0), Some(0));
-            assert!(axis.step_at(u16::MAX).unwrap_or(steps) < steps);
-        }
-        assert_eq!(Axis::of(46, 0).step_at(9), None);
-    }
 
     #[test]
     fn parts_fill_their_rows_up_to_a_calm_size() {

@@ -8,3 +8,4 @@ mod data;
 mod golden;
 mod info;
 mod opening;
+mod readme;

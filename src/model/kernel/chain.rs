@@ -1,13 +1,13 @@
-//! Layers one after another, as one custom op over a flat parameter tensor.
+//! Layers one after another, their parameters in one flat tensor.
 //!
 //! Samples are shared out over the rayon pool in equal parts. Within a part, neighbouring layers with many rows a
 //! sample run together over small groups, so that what one layer writes is still in the cache when the next reads it;
 //! layers with few rows run over the whole part, so that their products are large.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
-use candle_core::{CpuStorage, CustomOp2, Layout, Result, Shape, Tensor, bail};
+use candle_core::{Layout, Result, bail};
 use rayon::prelude::*;
 
 use super::layer::{Kind, Layer};
@@ -27,13 +27,6 @@ pub struct Chain {
     segments: Vec<(Range<usize>, bool)>,
     parameters: usize,
     buffers: Mutex<Vec<Vec<f32>>>,
-}
-
-/// What the samples of one part need: every layer's output, and room for the gradients and windows of a group.
-struct Part<'a> {
-    samples: usize,
-    /// Output of each layer for all samples of the part.
-    outputs: Vec<&'a mut [f32]>,
 }
 
 impl Chain {
@@ -132,29 +125,27 @@ impl Chain {
         parameters: &[f32],
         activations: &mut [f32],
     ) {
-        let mut part = self.split(samples, activations);
+        let mut outputs = self.split(samples, activations);
         for segment in &self.segments {
             let mut scratch = self.take(self.scratch(segment, samples));
             for group in groups(samples, segment.1) {
                 for index in segment.0.clone() {
-                    self.forward_layer(index, &group, x, parameters, &mut part, &mut scratch);
+                    self.forward_layer(index, &group, x, parameters, &mut outputs, &mut scratch);
                 }
             }
             self.give(scratch);
         }
     }
 
-    fn split<'a>(&self, samples: usize, mut activations: &'a mut [f32]) -> Part<'a> {
-        let outputs = self.layers.iter().map(|layer| {
+    /// Each layer's output for all samples of a part.
+    fn split<'a>(&self, samples: usize, mut activations: &'a mut [f32]) -> Vec<&'a mut [f32]> {
+        let each = |layer: &Layer| {
             let (head, tail) =
                 std::mem::take(&mut activations).split_at_mut(samples * layer.outputs());
             activations = tail;
             head
-        });
-        Part {
-            samples,
-            outputs: outputs.collect(),
-        }
+        };
+        self.layers.iter().map(each).collect()
     }
 
     fn forward_layer(
@@ -163,11 +154,11 @@ impl Chain {
         group: &Range<usize>,
         x: &[f32],
         parameters: &[f32],
-        part: &mut Part,
+        outputs: &mut [&mut [f32]],
         scratch: &mut [f32],
     ) {
         let layer = &self.layers[index];
-        let (before, from) = part.outputs.split_at_mut(index);
+        let (before, from) = outputs.split_at_mut(index);
         let input: &[f32] = before.last().map_or(x, |output| output);
         let input = &input[group.start * layer.inputs()..group.end * layer.inputs()];
         let output = &mut from[0][group.start * layer.outputs()..group.end * layer.outputs()];
@@ -183,10 +174,10 @@ impl Chain {
         activations: &mut [f32],
         dy: &[f32],
         dw: &mut [f32],
-        mut dx: Option<&mut [f32]>,
+        dx: Option<&mut [f32]>,
     ) {
         let samples = x.len() / self.inputs();
-        let part = self.split(samples, activations);
+        let outputs = self.split(samples, activations);
         // Gradient of the current segment's output, over the whole part.
         let mut outer = self.take(dy.len());
         outer.copy_from_slice(dy);
@@ -200,12 +191,10 @@ impl Chain {
                 let mut gradient = outer[group.start * last..group.end * last].to_vec();
                 for index in segment.0.clone().rev() {
                     let layer = &self.layers[index];
-                    let input = index
-                        .checked_sub(1)
-                        .map_or(x, |before| &*part.outputs[before]);
+                    let input = index.checked_sub(1).map_or(x, |before| &*outputs[before]);
                     let input = &input[group.start * layer.inputs()..group.end * layer.inputs()];
-                    let output = &part.outputs[index]
-                        [group.start * layer.outputs()..group.end * layer.outputs()];
+                    let output =
+                        &outputs[index][group.start * layer.outputs()..group.end * layer.outputs()];
                     let mut below = Vec::new();
                     let target = if index == first {
                         wanted.then(|| {
@@ -232,15 +221,14 @@ impl Chain {
             self.give(scratch);
             self.give(std::mem::replace(&mut outer, inner));
         }
-        if let Some(dx) = dx.as_deref_mut() {
+        if let Some(dx) = dx {
             dx.copy_from_slice(&outer);
         }
-        debug_assert_eq!(part.samples, samples);
         self.give(outer);
     }
 
-    /// Outputs of every layer, `parts` of samples in parallel; the last layer's output is `outputs()` numbers a sample.
-    fn forward_all(&self, x: &[f32], parameters: &[f32], activations: &mut [f32]) {
+    /// Outputs of every layer, part after part, the parts in parallel.
+    pub(super) fn forward_all(&self, x: &[f32], parameters: &[f32], activations: &mut [f32]) {
         let samples = x.len() / self.inputs();
         let part = part_size(samples);
         x.par_chunks(part * self.inputs())
@@ -248,6 +236,21 @@ impl Chain {
             .for_each(|(x, activations)| {
                 self.forward_part(x.len() / self.inputs(), x, parameters, activations);
             });
+    }
+
+    /// The number of samples in `x`, once both lengths have been checked.
+    pub(super) fn check(&self, x: &[f32], w: &[f32]) -> Result<usize> {
+        if !x.len().is_multiple_of(self.inputs()) {
+            bail!(
+                "a chain of {} inputs a sample got {} numbers",
+                self.inputs(),
+                x.len()
+            );
+        }
+        if w.len() != self.parameters {
+            bail!("a chain of {} parameters got {}", self.parameters, w.len());
+        }
+        Ok(x.len() / self.inputs())
     }
 
     /// Numbers of activations for `samples`.
@@ -289,144 +292,6 @@ pub(super) fn sum_parts(parts: Vec<Vec<f32>>) -> Vec<f32> {
             });
     }
     total
-}
-
-/// The chain as an operation of candle: `(samples, inputs)` and `(parameters)` to `(samples, outputs)`.
-pub struct Apply {
-    /// The layers.
-    pub chain: Arc<Chain>,
-    /// Whether the gradient of the input is wanted: data needs none.
-    pub input_gradient: bool,
-    /// Whether the activations are kept for a backward pass.
-    pub train: bool,
-    kept: Mutex<Vec<f32>>,
-}
-
-impl Apply {
-    /// One application of `chain`.
-    pub fn new(chain: Arc<Chain>, train: bool, input_gradient: bool) -> Self {
-        Self {
-            chain,
-            input_gradient,
-            train,
-            kept: Mutex::default(),
-        }
-    }
-}
-
-impl Drop for Apply {
-    fn drop(&mut self) {
-        let kept = std::mem::take(self.kept.get_mut().unwrap_or_else(PoisonError::into_inner));
-        if !kept.is_empty() {
-            self.chain.give(kept);
-        }
-    }
-}
-
-impl CustomOp2 for Apply {
-    fn name(&self) -> &'static str {
-        "chain"
-    }
-
-    fn cpu_fwd(
-        &self,
-        x: &CpuStorage,
-        x_layout: &Layout,
-        w: &CpuStorage,
-        w_layout: &Layout,
-    ) -> Result<(CpuStorage, Shape)> {
-        let (x, w) = (values(x, x_layout)?, values(w, w_layout)?);
-        let samples = self.chain.check(x, w)?;
-        let mut activations = self.chain.take(self.chain.activations_len(samples));
-        self.chain.forward_all(x, w, &mut activations);
-        let part = part_size(samples);
-        let mut out = Vec::with_capacity(samples * self.chain.outputs());
-        for part in activations.chunks(self.chain.activations_len(part).max(1)) {
-            out.extend_from_slice(
-                &part[self
-                    .chain
-                    .last_output(part.len() / self.chain.activations_len(1))],
-            );
-        }
-        if self.train {
-            *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = activations;
-        } else {
-            self.chain.give(activations);
-        }
-        Ok((
-            CpuStorage::F32(out),
-            Shape::from((samples, self.chain.outputs())),
-        ))
-    }
-
-    fn bwd(
-        &self,
-        x: &Tensor,
-        w: &Tensor,
-        _y: &Tensor,
-        dy: &Tensor,
-    ) -> Result<(Option<Tensor>, Option<Tensor>)> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.is_empty() {
-            bail!("a chain that was not run for training has no gradient");
-        }
-        let chain = &self.chain;
-        let dy = dy.contiguous()?;
-        let (x_guard, x_layout) = x.storage_and_layout();
-        let (w_guard, w_layout) = w.storage_and_layout();
-        let (dy_guard, dy_layout) = dy.storage_and_layout();
-        let (x_values, w_values, dy_values) = (
-            cpu(&x_guard, x_layout)?,
-            cpu(&w_guard, w_layout)?,
-            cpu(&dy_guard, dy_layout)?,
-        );
-        let samples = x_values.len() / chain.inputs();
-        let part = part_size(samples);
-        let mut dx = if self.input_gradient {
-            vec![0.0; x_values.len()]
-        } else {
-            Vec::new()
-        };
-        let dx_parts: Vec<Option<&mut [f32]>> = if self.input_gradient {
-            dx.chunks_mut(part * chain.inputs()).map(Some).collect()
-        } else {
-            (0..samples.div_ceil(part)).map(|_| None).collect()
-        };
-        let gradients: Vec<Vec<f32>> = x_values
-            .par_chunks(part * chain.inputs())
-            .zip(kept.par_chunks_mut(chain.activations_len(part)))
-            .zip(dy_values.par_chunks(part * chain.outputs()))
-            .zip(dx_parts)
-            .map(|(((x, activations), dy), dx)| {
-                let mut dw = vec![0.0; chain.parameters()];
-                chain.backward_part(x, w_values, activations, dy, &mut dw, dx);
-                dw
-            })
-            .collect();
-        let dw = Tensor::from_vec(sum_parts(gradients), w.shape(), w.device())?;
-        let dx = self
-            .input_gradient
-            .then(|| Tensor::from_vec(dx, x.shape(), x.device()))
-            .transpose()?;
-        Ok((dx, Some(dw)))
-    }
-}
-
-impl Chain {
-    /// The number of samples in `x`, once both lengths have been checked.
-    pub(super) fn check(&self, x: &[f32], w: &[f32]) -> Result<usize> {
-        if !x.len().is_multiple_of(self.inputs()) {
-            bail!(
-                "a chain of {} inputs a sample got {} numbers",
-                self.inputs(),
-                x.len()
-            );
-        }
-        if w.len() != self.parameters {
-            bail!("a chain of {} parameters got {}", self.parameters, w.len());
-        }
-        Ok(x.len() / self.inputs())
-    }
 }
 
 /// The numbers behind a tensor's storage guard.

@@ -2,6 +2,7 @@
 
 use std::io::{self, stdout};
 use std::panic;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{self, ThreadId};
 
 use crossterm::event::{DisableMouseCapture, EnableMouseCapture};
@@ -12,6 +13,9 @@ use crossterm::terminal::{
 };
 use crossterm::{cursor, style};
 
+/// Whether there is a terminal to give back.
+static TAKEN: AtomicBool = AtomicBool::new(false);
+
 /// The terminal in raw mode on its other screen, for as long as this lives.
 pub struct Guard(());
 
@@ -20,6 +24,7 @@ impl Guard {
     pub fn enter() -> io::Result<Self> {
         tell_panics_on_the_usual_screen(thread::current().id());
         enable_raw_mode()?;
+        TAKEN.store(true, Ordering::SeqCst);
         // From here on there is something to give back, also if the next line fails.
         let guard = Self(());
         execute!(
@@ -35,12 +40,19 @@ impl Guard {
 impl Drop for Guard {
     fn drop(&mut self) {
         give_back();
-        let _ = panic::take_hook();
+        // A thread that is panicking may not change the hook, and the process is about to end.
+        if !thread::panicking() {
+            let _ = panic::take_hook();
+        }
     }
 }
 
-/// Every step is tried: a terminal that refuses one of them may still take the next.
+/// Once only: leaving the other screen a second time would move the cursor over what was printed since. Every step
+/// is tried: a terminal that refuses one of them may still take the next.
 fn give_back() {
+    if !TAKEN.swap(false, Ordering::SeqCst) {
+        return;
+    }
     let _ = execute!(stdout(), EndSynchronizedUpdate, DisableMouseCapture);
     let _ = execute!(
         stdout(),
