@@ -50,7 +50,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
 }
 
 fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
-    let dataset = Dataset::inspect(&args.path)?;
+    let dataset = Dataset::inspect(&args.path, &args.mapping.topics)?;
     let counts = dataset.image_counts();
     let episodes: Vec<_> = dataset
         .metas()

@@ -3,9 +3,12 @@
 
 mod align;
 mod architecture;
+mod common;
 mod damage;
 mod data;
+mod errors;
 mod golden;
 mod info;
 mod opening;
 mod readme;
+mod topics;
