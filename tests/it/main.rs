@@ -10,5 +10,8 @@ mod errors;
 mod golden;
 mod info;
 mod opening;
+mod pipeline;
+mod portable;
 mod readme;
+mod resume;
 mod topics;
