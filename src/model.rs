@@ -29,7 +29,7 @@ use self::config::Config;
 use self::decoder::Decoder;
 use self::dynamics::Dynamics;
 use self::encoder::Encoder;
-use self::network::Network;
+use self::network::{Draw, Network};
 use crate::modality::Expert;
 
 /// A model: an encoder and a decoder for each sensor expert, and the dynamics.
@@ -82,6 +82,19 @@ impl Model {
     /// A model before training, its parameters drawn from `seed`. The config must have been validated.
     pub fn new(config: Config, seed: u64, device: &Device) -> Result<Self> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        Self::build(config, &mut |parameters| parameters.init(&mut rng), device)
+    }
+
+    /// A model before its parameters are read: all zero. The config must have been validated.
+    pub fn blank(config: Config, device: &Device) -> Result<Self> {
+        Self::build(
+            config,
+            &mut |parameters| vec![0.0; parameters.norm.trained()],
+            device,
+        )
+    }
+
+    fn build(config: Config, draw: &mut Draw, device: &Device) -> Result<Self> {
         let (mut encoders, mut decoders) = (Vec::new(), Vec::new());
         for &expert in &config.experts {
             let (enc, dec) = (
@@ -89,23 +102,19 @@ impl Model {
                 format!("{}_dec", stem(expert)),
             );
             if expert == Expert::Vision {
-                encoders.push(Encoder::of_images(&config, &enc, &mut rng, device)?);
-                decoders.push(Decoder::of_images(&config, &dec, &mut rng, device)?);
+                encoders.push(Encoder::of_images(&config, &enc, draw, device)?);
+                decoders.push(Decoder::of_images(&config, &dec, draw, device)?);
             } else {
                 let channels = config
                     .channels(expert)
                     .iter()
                     .map(|(channels, _)| channels.names.len())
                     .sum();
-                encoders.push(Encoder::of_windows(
-                    &config, channels, &enc, &mut rng, device,
-                )?);
-                decoders.push(Decoder::of_windows(
-                    &config, channels, &dec, &mut rng, device,
-                )?);
+                encoders.push(Encoder::of_windows(&config, channels, &enc, draw, device)?);
+                decoders.push(Decoder::of_windows(&config, channels, &dec, draw, device)?);
             }
         }
-        let dynamics = Dynamics::new(&config, "dyn", &mut rng, device)?;
+        let dynamics = Dynamics::new(&config, "dyn", draw, device)?;
         Ok(Self {
             config,
             encoders,

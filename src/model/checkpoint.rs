@@ -209,7 +209,7 @@ pub fn load(folder: &Path) -> Result<(Model, Option<Probe>), CheckpointError> {
         path: path.clone(),
         what,
     };
-    let model = Model::new(config, 0, &Device::Cpu).map_err(|error| refuse(first_line(&error)))?;
+    let model = Model::blank(config, &Device::Cpu).map_err(|error| refuse(first_line(&error)))?;
     load_weights(&model, &path)?;
     let path = folder.join(PROBE);
     let probe = if path.exists() {

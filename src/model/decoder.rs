@@ -3,7 +3,6 @@
 use std::sync::{Arc, Mutex};
 
 use candle_core::{Device, Result, Tensor};
-use rand::Rng;
 
 use super::config::Config;
 use super::encoder::row_windows;
@@ -14,7 +13,7 @@ use super::kernel::gather::Windows;
 use super::kernel::pointwise::Activation;
 use super::kernel::squared_error::{PerSample, SquaredError};
 use super::layers::Builder;
-use super::network::{Network, Parameters};
+use super::network::{Draw, Network, Parameters};
 
 /// One expert's decoder: a chain from the latent to an observation.
 #[derive(Debug)]
@@ -88,10 +87,10 @@ impl Decoder {
     pub fn of_images(
         config: &Config,
         name: &str,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
-        Self::new(image(config), name, rng, device)
+        Self::new(image(config), name, draw, device)
     }
 
     /// The decoder of windows with `channels` channels.
@@ -99,20 +98,20 @@ impl Decoder {
         config: &Config,
         channels: usize,
         name: &str,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
-        Self::new(window(config, channels), name, rng, device)
+        Self::new(window(config, channels), name, draw, device)
     }
 
     fn new(
         (chain, parameters): (Arc<Chain>, Parameters),
         name: &str,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
         Ok(Self {
-            network: Network::new(name, parameters, rng, device)?,
+            network: Network::new(name, parameters, draw, device)?,
             chain,
         })
     }

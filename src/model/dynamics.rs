@@ -1,14 +1,13 @@
 //! `p(z_t | z_{t-1}, u_{t-1})`: the prior expert, locally linear with matrices mixed by a recurrent network.
 
 use candle_core::{D, Device, Result, Tensor};
-use rand::Rng;
 
 use super::config::Config;
 use super::fallback;
 use super::gaussian::DiagGaussian;
 use super::kernel::cell::{Cell, Sizes};
 use super::kernel::weight_norm::Stretch;
-use super::network::{Init, Network, Parameters};
+use super::network::{Draw, Init, Network, Parameters};
 
 /// Variance of the first prior, N(0, 20 I).
 pub const FIRST_VARIANCE: f64 = 20.0;
@@ -97,7 +96,7 @@ fn parameters(sizes: Sizes) -> Parameters {
 
 impl Dynamics {
     /// Dynamics of a model's sizes.
-    pub fn new(config: &Config, name: &str, rng: &mut impl Rng, device: &Device) -> Result<Self> {
+    pub fn new(config: &Config, name: &str, draw: &mut Draw, device: &Device) -> Result<Self> {
         let sizes = Sizes {
             latent: config.latent,
             inputs: config.latent + Config::CONTROL,
@@ -105,7 +104,7 @@ impl Dynamics {
             mixtures: config.mixtures,
         };
         Ok(Self {
-            network: Network::new(name, parameters(sizes), rng, device)?,
+            network: Network::new(name, parameters(sizes), draw, device)?,
             sizes,
         })
     }

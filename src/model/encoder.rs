@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use candle_core::{Device, Result, Tensor};
-use rand::Rng;
 
 use super::config::Config;
 use super::fallback;
@@ -12,7 +11,7 @@ use super::kernel::apply::Apply;
 use super::kernel::chain::Chain;
 use super::kernel::gather::Windows;
 use super::layers::Builder;
-use super::network::{Network, Parameters};
+use super::network::{Draw, Network, Parameters};
 
 /// One expert's encoder: a chain from what it sees to mean and log-variance.
 #[derive(Debug)]
@@ -87,10 +86,10 @@ impl Encoder {
     pub fn of_images(
         config: &Config,
         name: &str,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
-        Self::new(image(config), name, config.latent, rng, device)
+        Self::new(image(config), name, config.latent, draw, device)
     }
 
     /// The encoder of windows with `channels` channels.
@@ -98,21 +97,21 @@ impl Encoder {
         config: &Config,
         channels: usize,
         name: &str,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
-        Self::new(window(config, channels), name, config.latent, rng, device)
+        Self::new(window(config, channels), name, config.latent, draw, device)
     }
 
     fn new(
         (chain, parameters): (Arc<Chain>, Parameters),
         name: &str,
         latent: usize,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
         Ok(Self {
-            network: Network::new(name, parameters, rng, device)?,
+            network: Network::new(name, parameters, draw, device)?,
             chain,
             latent,
         })

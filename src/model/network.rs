@@ -22,16 +22,22 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// Offsets in the flat parameters of its numbers, in its own row-major order.
-    pub fn offsets(&self) -> Vec<usize> {
-        let mut offsets = vec![self.base as isize];
-        for &(len, stride) in &self.axes {
-            offsets = offsets
-                .iter()
-                .flat_map(|&start| (0..len as isize).map(move |i| start + i * stride))
-                .collect();
+    /// Calls `visit` with the offset in the flat parameters of each of its numbers, in its own row-major order.
+    fn visit(&self, mut visit: impl FnMut(usize)) {
+        fn go(axes: &[(usize, isize)], start: isize, visit: &mut impl FnMut(usize)) {
+            match axes {
+                [] => visit(start as usize),
+                [(len, stride)] => {
+                    (0..*len as isize).for_each(|i| visit((start + i * stride) as usize))
+                }
+                [(len, stride), rest @ ..] => {
+                    for i in 0..*len as isize {
+                        go(rest, start + i * stride, visit);
+                    }
+                }
+            }
         }
-        offsets.into_iter().map(|offset| offset as usize).collect()
+        go(&self.axes, self.base as isize, &mut visit);
     }
 }
 
@@ -135,6 +141,9 @@ impl Parameters {
     }
 }
 
+/// What a network's parameters are at first: drawn before training, or blank before they are read.
+pub type Draw<'a> = dyn FnMut(&Parameters) -> Vec<f32> + 'a;
+
 /// A network's parameters as tensors.
 #[derive(Debug)]
 pub struct Network {
@@ -145,15 +154,14 @@ pub struct Network {
 }
 
 impl Network {
-    /// A network with parameters drawn before training.
+    /// A network whose parameters `draw` gives.
     pub fn new(
         name: &str,
         parameters: Parameters,
-        rng: &mut impl Rng,
+        draw: &mut Draw,
         device: &Device,
     ) -> Result<Self> {
-        let theta = parameters.init(rng);
-        let theta = Var::from_vec(theta, parameters.norm.trained(), device)?;
+        let theta = Var::from_vec(draw(&parameters), parameters.norm.trained(), device)?;
         Ok(Self {
             name: name.to_owned(),
             parameters,
@@ -182,19 +190,18 @@ impl Network {
     pub fn fill(&self, mut find: impl FnMut(&Slot) -> Result<Vec<f32>>) -> Result<()> {
         let mut theta = self.theta.to_vec1::<f32>()?;
         for slot in self.slots() {
-            let (numbers, offsets) = (find(slot)?, slot.offsets());
-            if numbers.len() != offsets.len() {
+            let numbers = find(slot)?;
+            let wanted: usize = slot.shape.iter().product();
+            if numbers.len() != wanted {
                 bail!(
-                    "{}.{}: {} numbers where {} are wanted",
+                    "{}.{}: {} numbers where {wanted} are wanted",
                     self.name,
                     slot.name,
-                    numbers.len(),
-                    offsets.len()
+                    numbers.len()
                 );
             }
-            for (at, number) in offsets.into_iter().zip(numbers) {
-                theta[at] = number;
-            }
+            let mut numbers = numbers.into_iter();
+            slot.visit(|at| theta[at] = numbers.next().unwrap_or_default());
         }
         self.theta.set(&Tensor::from_vec(
             theta,
@@ -205,7 +212,9 @@ impl Network {
 
     /// The numbers of `slot` in `flat`, which is laid out as theta (itself or its gradient).
     pub fn view(slot: &Slot, flat: &[f32]) -> Vec<f32> {
-        slot.offsets().into_iter().map(|at| flat[at]).collect()
+        let mut numbers = Vec::with_capacity(slot.shape.iter().product());
+        slot.visit(|at| numbers.push(flat[at]));
+        numbers
     }
 
     /// Every slot as a tensor, in order.
