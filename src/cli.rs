@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::data::Role;
 use crate::episode::Split;
 
 /// Look inside a product-of-experts fusion.
@@ -59,6 +60,17 @@ pub struct ViewArgs {
     /// How to draw images: `auto` asks the terminal
     #[arg(long, value_enum, default_value_t)]
     pub images: ImageProtocol,
+    /// Where the dataset has its roles.
+    #[command(flatten)]
+    pub mapping: TopicArgs,
+}
+
+/// Topics of a recording that names them otherwise.
+#[derive(Clone, Debug, Default, Args)]
+pub struct TopicArgs {
+    /// Topic of a role (vision, haptic, ee_pose, ee_twist, control, object); repeat for several; wins over dataset.toml
+    #[arg(long = "topic", value_name = "ROLE=TOPIC", value_parser = parse_topic)]
+    pub topics: Vec<(Role, String)>,
 }
 
 /// How images reach the terminal.
@@ -85,6 +97,9 @@ pub struct InfoArgs {
     /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
+    /// Where the dataset has its roles.
+    #[command(flatten)]
+    pub mapping: TopicArgs,
 }
 
 /// Arguments of `simulate`.
@@ -152,6 +167,9 @@ pub struct TrainArgs {
     /// Go on from the run folder's last checkpoint
     #[arg(long)]
     pub resume: bool,
+    /// Where the dataset has its roles.
+    #[command(flatten)]
+    pub mapping: TopicArgs,
 }
 
 /// Arguments of `eval`.
@@ -175,6 +193,9 @@ pub struct EvalArgs {
     /// Print JSON instead of a Markdown table
     #[arg(long)]
     pub json: bool,
+    /// Where the dataset has its roles.
+    #[command(flatten)]
+    pub mapping: TopicArgs,
 }
 
 fn parse_size(text: &str) -> Result<(u16, u16), String> {
@@ -189,4 +210,16 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
 
 fn parse_split(text: &str) -> Result<Split, String> {
     Split::from_name(text).ok_or_else(|| format!("{text:?} is not train, val or test"))
+}
+
+fn parse_topic(text: &str) -> Result<(Role, String), String> {
+    let (role, topic) = text
+        .split_once('=')
+        .filter(|(_, topic)| !topic.is_empty())
+        .ok_or_else(|| format!("{text:?} is not ROLE=TOPIC, for example vision=/camera/image"))?;
+    let role = Role::from_name(role).ok_or_else(|| {
+        let names = Role::ALL.map(Role::name).join(", ");
+        format!("there is no role {role:?}, only {names}")
+    })?;
+    Ok((role, topic.to_owned()))
 }

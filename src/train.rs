@@ -37,7 +37,7 @@ pub enum TrainError {
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     /// A tensor operation failed.
-    #[error("computing: {0}")]
+    #[error("computing")]
     Tensor(#[from] candle_core::Error),
     /// A loss was no number.
     #[error(

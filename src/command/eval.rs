@@ -34,7 +34,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         .map(|p| f32::from(p) / 255.0)
         .collect();
     let path = sample::data(args.data.as_ref())?;
-    let dataset = Dataset::open(&path)?;
+    let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
     let protocol = Protocol {
         context: args.context,
         horizon: args.horizon,
@@ -68,7 +68,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
                 missing.join(", ")
             );
         }
-        suits(config, &episode)?;
+        suits(config, &episode).with_context(|| path.display().to_string())?;
         if episode.steps() >= protocol.context + protocol.horizon {
             episodes.push(episode);
         }

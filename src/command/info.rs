@@ -50,7 +50,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
 }
 
 fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
-    let dataset = Dataset::inspect(&args.path)?;
+    let dataset = Dataset::inspect(&args.path, &args.mapping.topics)?;
     let counts = dataset.image_counts();
     let episodes: Vec<_> = dataset
         .metas()
@@ -75,7 +75,9 @@ fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
     Ok(Info {
         dataset: dataset.name().to_owned(),
         data_hash: dataset.data_hash().to_owned(),
-        duration_secs: episodes.iter().map(|episode| episode.duration_secs).sum(),
+        duration_secs: episodes
+            .iter()
+            .fold(0.0, |sum, episode| sum + episode.duration_secs),
         episodes,
         files: dataset.files(),
         left_out,

@@ -49,8 +49,16 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     } else {
         fresh_config(args)?
     };
-    let dataset = Dataset::open(&args.data)?;
+    let dataset = Dataset::open_with(&args.data, &args.mapping.topics)?;
     let sets = load(&dataset, config.layout(), args.seed)?;
+    if sets.train.len() < config.training.batch {
+        bail!(
+            "{} has {} episodes to train on, a batch needs {}; record more, or lower `training.batch` in a --config",
+            args.data.display(),
+            sets.train.len(),
+            config.training.batch
+        );
+    }
     eprintln!(
         "{}: {} episodes to train on, {} for validation{}",
         dataset.name(),
@@ -62,14 +70,6 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
             String::new()
         },
     );
-    if sets.train.len() < config.training.batch {
-        bail!(
-            "{} has {} episodes to train on, a batch needs {}; record more, or lower `training.batch` in a --config",
-            args.data.display(),
-            sets.train.len(),
-            config.training.batch
-        );
-    }
     statistics::complete(&mut config, &sets.train);
     let model = Model::new(config, args.seed, &Device::Cpu)?;
     std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;

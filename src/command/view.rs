@@ -70,7 +70,7 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
 /// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data.
 fn open(args: &ViewArgs) -> anyhow::Result<Session> {
     let path = sample::data(args.data.as_ref())?;
-    let dataset = Dataset::open(&path)?;
+    let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
     let folders = if args.model.is_empty() {
         vec![sample::model(None)?]
     } else {

@@ -11,7 +11,7 @@ use super::hash::Fnv;
 use super::mcap_file::McapFile;
 use super::report::{FileReport, LeftOut, TopicReport};
 use super::split::splits;
-use super::topics::Topics;
+use super::topics::{Role, Topics};
 use crate::episode::{Episode, EpisodeMeta, EpisodeSource, Layout, Recording, SourceError, Split};
 
 /// Recordings on disk.
@@ -39,18 +39,26 @@ impl Dataset {
     /// If the path cannot be read, is no MCAP, or holds no episode at all. In a folder, what cannot be opened is
     /// reported by [`Dataset::left_out`] as long as one file can.
     pub fn open(path: &Path) -> Result<Self, DataError> {
-        let dataset = Self::inspect(path)?;
+        Self::open_with(path, &[])
+    }
+
+    /// Like [`Dataset::open`], with other topics for some roles than `dataset.toml` or the format say.
+    ///
+    /// # Errors
+    /// Those of [`Dataset::open`], and a role that is named twice or a topic with two roles.
+    pub fn open_with(path: &Path, named: &[(Role, String)]) -> Result<Self, DataError> {
+        let dataset = Self::inspect(path, named)?;
         if dataset.metas.is_empty() {
             return Err(dataset.why_empty());
         }
         Ok(dataset)
     }
 
-    /// Like [`Dataset::open`], for looking at what is there: no episode at all is no error.
+    /// Like [`Dataset::open_with`], for looking at what is there: no episode at all is no error.
     ///
     /// # Errors
-    /// If the path cannot be read or is no MCAP.
-    pub fn inspect(path: &Path) -> Result<Self, DataError> {
+    /// If the path cannot be read or is no MCAP, or `named` cannot be used.
+    pub fn inspect(path: &Path, named: &[(Role, String)]) -> Result<Self, DataError> {
         let is_folder = fs::metadata(path).map_err(DataError::io(path))?.is_dir();
         let (folder, paths) = if is_folder {
             (path, mcap_files(path)?)
@@ -65,7 +73,7 @@ impl Dataset {
                 .to_string_lossy()
                 .into_owned(),
             hash: String::new(),
-            topics: Topics::beside(folder)?,
+            topics: Topics::beside(folder)?.with(named)?,
             files: Vec::new(),
             homes: Vec::new(),
             metas: Vec::new(),
@@ -99,7 +107,7 @@ impl Dataset {
         let mut metas = file.episodes();
         if file.images() < 2 {
             let why = format!(
-                "{} image(s) on {}, and an episode needs two; map the camera's topic in dataset.toml",
+                "{} image(s) on {}, and an episode needs two; name the camera's with --topic vision=TOPIC",
                 file.images(),
                 self.topics.vision
             );
@@ -132,17 +140,23 @@ impl Dataset {
     }
 
     fn why_empty(&self) -> DataError {
-        let mut reasons: Vec<_> = self
-            .files
-            .iter()
-            .flat_map(|file| file.index.notes.iter().cloned())
-            .collect();
-        let left_out = self.files.iter().flat_map(|file| &file.left_out);
-        reasons.extend(
-            left_out
-                .chain(&self.left_out)
-                .map(|left| format!("{} {}", left.what, left.why)),
-        );
+        let say = |left: &LeftOut| {
+            // The message begins with the path of a lone file anyway.
+            if left.what == self.path.display().to_string() {
+                left.why.clone()
+            } else {
+                format!("{} {}", left.what, left.why)
+            }
+        };
+        let mut reasons = Vec::new();
+        for file in &self.files {
+            reasons.extend(file.index.notes.iter().cloned());
+            // Without any message, no other topic would help.
+            if file.index.counts.values().any(|&messages| messages > 0) {
+                reasons.extend(file.left_out.iter().map(say));
+            }
+        }
+        reasons.extend(self.left_out.iter().map(say));
         if reasons.is_empty() {
             reasons.push("no messages".to_owned());
         }
@@ -239,11 +253,7 @@ impl Dataset {
     fn file_report(&self, home: usize) -> FileReport {
         let file = &self.files[home];
         let index = &file.index;
-        let secs: f64 = file
-            .episodes()
-            .iter()
-            .map(|meta| meta.end_nanos.saturating_sub(meta.start_nanos) as f64 * 1e-9)
-            .sum();
+        let secs = file.recorded_secs();
         let mut topics: Vec<_> = index
             .channels
             .iter()

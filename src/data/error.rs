@@ -1,6 +1,6 @@
 //! What can be wrong with a dataset: which file, where in it, and what to do.
 
-use std::io;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -9,12 +9,12 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum DataError {
     /// The operating system refused.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {cause}{}", path.display(), advice(cause))]
     Io {
         /// The file or folder.
         path: PathBuf,
         /// What it said.
-        source: io::Error,
+        cause: io::Error,
     },
     /// A folder without recordings.
     #[error("{}: no .mcap file in this folder; name a file, or a folder that holds some", .0.display())]
@@ -53,7 +53,7 @@ pub enum DataError {
     },
     /// A recording without the two images that make an episode.
     #[error(
-        "{place}: {images} image(s), and an episode needs two; leave it out, or map the camera's topic in dataset.toml"
+        "{place}: {images} image(s), and an episode needs two; leave it out, or name the camera's with --topic vision=TOPIC"
     )]
     TooFewImages {
         /// Which episode, of which file where that is known.
@@ -62,7 +62,7 @@ pub enum DataError {
         images: usize,
     },
     /// Nothing in the dataset can be shown.
-    #[error("{}: no episode can be opened: {why}", path.display())]
+    #[error("{}: no episode can be opened: {why}; record or copy it again, or see what it holds with `poescope info`", path.display())]
     NoEpisode {
         /// The file or folder.
         path: PathBuf,
@@ -87,6 +87,9 @@ pub enum DataError {
         /// What the parser said.
         what: String,
     },
+    /// Topics named by the caller that cannot be used.
+    #[error("--topic: {0}; give each role one topic, and each topic one role")]
+    Named(String),
     /// A recording that cannot be written.
     #[error("{}: episode {episode}: {what}", path.display())]
     Unwritable {
@@ -98,21 +101,31 @@ pub enum DataError {
         what: String,
     },
     /// The container could not be written.
-    #[error("{}: cannot write: {source}", path.display())]
+    #[error("{}: cannot write: {cause}", path.display())]
     Write {
         /// The file being written.
         path: PathBuf,
         /// What went wrong.
-        source: mcap::McapError,
+        cause: mcap::McapError,
     },
 }
 
 impl DataError {
     /// Adds the path to an error of the operating system: `map_err(DataError::io(path))`.
     pub(super) fn io(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
-        |source| Self::Io {
+        |cause| Self::Io {
             path: path.to_owned(),
-            source,
+            cause,
         }
+    }
+}
+
+/// What to do about an error of the operating system, where that can be known.
+fn advice(cause: &io::Error) -> &'static str {
+    match cause.kind() {
+        ErrorKind::NotFound => "; check the path",
+        ErrorKind::PermissionDenied => "; change the permissions, or choose another path",
+        ErrorKind::StorageFull => "; make room, or choose another disk",
+        _ => "",
     }
 }

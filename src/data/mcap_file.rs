@@ -92,6 +92,18 @@ impl McapFile {
         metas
     }
 
+    /// Time that lies in episodes, in seconds; what a cut has taken does not count.
+    pub(super) fn recorded_secs(&self) -> f64 {
+        let Some((_, last)) = self.index.log_times else {
+            return 0.0;
+        };
+        self.episodes().iter().fold(0.0, |sum, meta| {
+            let (start, end) = log_range(meta);
+            let end = if self.index.cut { end.min(last) } else { end };
+            sum + end.saturating_sub(start) as f64 * 1e-9
+        })
+    }
+
     /// Messages on the camera's channels in the whole file.
     pub(super) fn images(&self) -> u64 {
         self.vision()

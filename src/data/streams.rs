@@ -26,7 +26,9 @@ pub(super) fn find(index: &Index, topics: &Topics) -> Streams {
     for (&id, channel) in &index.channels {
         let read = match topics.role(&channel.topic) {
             Some(role) => stream(index, channel, role, &mut found.notes),
-            None => Err("has no role; name it in dataset.toml to give it one".to_owned()),
+            None => Err(
+                "has no role; give it one with --topic ROLE=TOPIC or in dataset.toml".to_owned(),
+            ),
         };
         match read {
             Ok(stream) => {

@@ -1,4 +1,4 @@
-//! Which topic plays which role: the format's defaults, or a `dataset.toml` beside the files.
+//! Which topic plays which role: the format's defaults, a `dataset.toml` beside the files, what the caller names.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -38,7 +38,12 @@ impl Role {
         Self::Vision,
     ];
 
-    /// Its key in `dataset.toml`.
+    /// The role that [`Self::name`] calls so.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|role| role.name() == name)
+    }
+
+    /// Its key in `dataset.toml`, and its name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Control => "control",
@@ -112,17 +117,40 @@ impl Topics {
             what: error.message().to_owned(),
             path: path.clone(),
         })?;
-        let topics = parsed.topics;
-        for (i, a) in Role::ALL.into_iter().enumerate() {
-            for b in Role::ALL.into_iter().skip(i + 1) {
-                if topics.topic(a) == topics.topic(b) {
-                    let topic = topics.topic(a);
-                    let what = format!("topic {topic} is both {} and {}", a.name(), b.name());
-                    return Err(DataError::Mapping { path, what });
-                }
-            }
+        match parsed.topics.doubled() {
+            Some(what) => Err(DataError::Mapping { path, what }),
+            None => Ok(parsed.topics),
         }
-        Ok(topics)
+    }
+
+    /// The same, but for the roles that `named` gives another topic.
+    pub(super) fn with(mut self, named: &[(Role, String)]) -> Result<Self, DataError> {
+        for (i, (role, topic)) in named.iter().enumerate() {
+            if named[..i].iter().any(|(earlier, _)| earlier == role) {
+                let what = format!("role {} has more than one topic", role.name());
+                return Err(DataError::Named(what));
+            }
+            topic.clone_into(self.topic_mut(*role));
+        }
+        match self.doubled() {
+            Some(what) => Err(DataError::Named(what)),
+            None => Ok(self),
+        }
+    }
+
+    /// What is wrong, if a topic has two roles: its messages could be read as one of them only.
+    fn doubled(&self) -> Option<String> {
+        let mut pairs = Role::ALL
+            .into_iter()
+            .enumerate()
+            .flat_map(|(i, a)| Role::ALL.into_iter().skip(i + 1).map(move |b| (a, b)));
+        let (a, b) = pairs.find(|&(a, b)| self.topic(a) == self.topic(b))?;
+        Some(format!(
+            "topic {} is both {} and {}",
+            self.topic(a),
+            a.name(),
+            b.name()
+        ))
     }
 
     /// The topic of `role`.
@@ -134,6 +162,17 @@ impl Topics {
             Role::EeTwist => &self.ee_twist,
             Role::Object => &self.object,
             Role::Vision => &self.vision,
+        }
+    }
+
+    fn topic_mut(&mut self, role: Role) -> &mut String {
+        match role {
+            Role::Control => &mut self.control,
+            Role::Haptic => &mut self.haptic,
+            Role::EePose => &mut self.ee_pose,
+            Role::EeTwist => &mut self.ee_twist,
+            Role::Object => &mut self.object,
+            Role::Vision => &mut self.vision,
         }
     }
 

@@ -174,9 +174,9 @@ impl Drop for DatasetWriter {
 
 fn write_error(path: &Path) -> impl Fn(McapError) -> DataError + use<> {
     let path = path.to_owned();
-    move |source| DataError::Write {
+    move |cause| DataError::Write {
         path: path.clone(),
-        source,
+        cause,
     }
 }
 

@@ -1,6 +1,7 @@
 //! A checkpoint: a folder with `config.toml`, `weights.safetensors`, `probe.safetensors` and `report.json`.
 
 use std::collections::HashMap;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use candle_core::{DType, Device, Tensor};
@@ -14,15 +15,15 @@ use super::probe::Probe;
 #[derive(Debug, Error)]
 pub enum CheckpointError {
     /// A file could not be read or written.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {cause}{}", path.display(), advice(cause))]
     File {
         /// Which.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
+        cause: std::io::Error,
     },
     /// `config.toml` is not one.
-    #[error("{}: {what}", path.display())]
+    #[error("{}: {what}; correct it there, or start from the config of a trained model", path.display())]
     Config {
         /// Which.
         path: PathBuf,
@@ -39,6 +40,24 @@ pub enum CheckpointError {
     },
 }
 
+/// What to do about an error of the operating system, where that can be known.
+fn advice(cause: &std::io::Error) -> &'static str {
+    match cause.kind() {
+        ErrorKind::NotFound => {
+            "; check the path: a checkpoint is a folder that `poescope train` has written"
+        }
+        ErrorKind::PermissionDenied => "; change the permissions, or choose another path",
+        ErrorKind::StorageFull => "; make room, or choose another disk",
+        _ => "",
+    }
+}
+
+/// An error of a tensor operation on one line: under `RUST_BACKTRACE` a backtrace follows.
+pub fn first_line(error: &candle_core::Error) -> String {
+    let text = error.to_string();
+    text.lines().next().unwrap_or_default().to_owned()
+}
+
 /// The config's file name.
 pub const CONFIG: &str = "config.toml";
 /// The weights' file name.
@@ -52,9 +71,9 @@ pub const REPORT: &str = "report.json";
 
 /// Writes `bytes` to `path` by way of a temporary file beside it, so that a half-written one is never seen.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
-    let file_error = |source| CheckpointError::File {
+    let file_error = |cause| CheckpointError::File {
         path: path.to_owned(),
-        source,
+        cause,
     };
     let temporary = path.with_extension("part");
     std::fs::write(&temporary, bytes).map_err(file_error)?;
@@ -63,27 +82,41 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
 
 /// Reads a config, and says which key is wrong.
 pub fn load_config(path: &Path) -> Result<Config, CheckpointError> {
-    let text = std::fs::read_to_string(path).map_err(|source| CheckpointError::File {
+    let text = std::fs::read_to_string(path).map_err(|cause| CheckpointError::File {
         path: path.to_owned(),
-        source,
+        cause,
     })?;
     let refuse = |what: String| CheckpointError::Config {
         path: path.to_owned(),
         what,
     };
     let config: Config =
-        toml::from_str(&text).map_err(|error| refuse(error.message().to_owned()))?;
+        toml::from_str(&text).map_err(|error| refuse(what_is_wrong(&text, &error)))?;
     config
         .validate()
         .map_err(|error: ConfigError| refuse(error.to_string()))?;
     Ok(config)
 }
 
+/// The parser's complaint and its line: a wrong type is told without its key.
+fn what_is_wrong(text: &str, error: &toml::de::Error) -> String {
+    // What is missing is told of the whole file.
+    let span = error.span().filter(|span| span.start > 0);
+    match span.and_then(|span| text.get(..span.start)) {
+        Some(before) => format!(
+            "line {}: {}",
+            before.matches('\n').count() + 1,
+            error.message()
+        ),
+        None => error.message().to_owned(),
+    }
+}
+
 /// Writes the config and the weights, as `dtype` numbers, into `folder`.
 pub fn save(model: &Model, folder: &Path, dtype: DType) -> Result<(), CheckpointError> {
-    std::fs::create_dir_all(folder).map_err(|source| CheckpointError::File {
+    std::fs::create_dir_all(folder).map_err(|cause| CheckpointError::File {
         path: folder.to_owned(),
-        source,
+        cause,
     })?;
     let path = folder.join(CONFIG);
     let text = toml::to_string(&model.config).map_err(|error| CheckpointError::Config {
@@ -105,7 +138,7 @@ pub fn save(model: &Model, folder: &Path, dtype: DType) -> Result<(), Checkpoint
         path: path.clone(),
         what,
     };
-    let tensors = tensors().map_err(|error| refuse(error.to_string()))?;
+    let tensors = tensors().map_err(|error| refuse(first_line(&error)))?;
     write_tensors(&path, tensors)
 }
 
@@ -121,14 +154,14 @@ pub fn write_tensors(path: &Path, tensors: Vec<(String, Tensor)>) -> Result<(), 
 
 /// Reads named tensors.
 pub fn read_tensors(path: &Path) -> Result<HashMap<String, Tensor>, CheckpointError> {
-    let bytes = std::fs::read(path).map_err(|source| CheckpointError::File {
+    let bytes = std::fs::read(path).map_err(|cause| CheckpointError::File {
         path: path.to_owned(),
-        source,
+        cause,
     })?;
     candle_core::safetensors::load_buffer(&bytes, &Device::Cpu).map_err(|error| {
         CheckpointError::Weights {
             path: path.to_owned(),
-            what: format!("not safetensors ({error})"),
+            what: format!("not safetensors ({})", first_line(&error)),
         }
     })
 }
@@ -163,7 +196,7 @@ pub fn load_weights(model: &Model, path: &Path) -> Result<(), CheckpointError> {
                 }
                 Ok(numbers)
             })
-            .map_err(|error| refuse(error.to_string()))?;
+            .map_err(|error| refuse(first_line(&error)))?;
     }
     Ok(())
 }
@@ -176,7 +209,7 @@ pub fn load(folder: &Path) -> Result<(Model, Option<Probe>), CheckpointError> {
         path: path.clone(),
         what,
     };
-    let model = Model::blank(config, &Device::Cpu).map_err(|error| refuse(error.to_string()))?;
+    let model = Model::blank(config, &Device::Cpu).map_err(|error| refuse(first_line(&error)))?;
     load_weights(&model, &path)?;
     let path = folder.join(PROBE);
     let probe = if path.exists() {

@@ -19,6 +19,7 @@ pub mod weight_norm;
 #[cfg(test)]
 mod tests;
 
+use std::ffi::OsStr;
 use std::sync::OnceLock;
 
 use candle_core::backend::BackendStorage as _;
@@ -31,10 +32,15 @@ pub const PORTABLE_ENV: &str = "POESCOPE_PORTABLE";
 /// The instruction set of this machine, or the portable one where [`PORTABLE_ENV`] asks for it.
 pub fn arch() -> Arch {
     static ARCH: OnceLock<Arch> = OnceLock::new();
-    *ARCH.get_or_init(|| match std::env::var_os(PORTABLE_ENV) {
+    *ARCH.get_or_init(|| choose(std::env::var_os(PORTABLE_ENV).as_deref()))
+}
+
+/// The instruction set to compute with when [`PORTABLE_ENV`] has this value.
+fn choose(portable: Option<&OsStr>) -> Arch {
+    match portable {
         Some(value) if value != "0" => Arch::Scalar,
         _ => Arch::new(),
-    })
+    }
 }
 
 /// Runs `f` compiled for this machine's instruction set. `f` must be marked `#[inline(always)]`.

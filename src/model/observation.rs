@@ -53,7 +53,7 @@ pub enum Unsuited {
     },
     /// A channel is far outside of what the model has seen.
     #[error(
-        "channel `{channel}` of episode `{episode}` is {times:.0} of model `{model}`'s scales from its mean: other \
+        "channel `{channel}` of episode `{episode}` lies {times:.0} times model `{model}`'s scale from its mean: other \
          units or another sensor than it was trained on; choose a model trained on such data"
     )]
     Scaling {

@@ -8,7 +8,7 @@ use std::path::Path;
 use candle_core::{DType, Device, Tensor};
 use nalgebra::{DMatrix, Matrix2, SymmetricEigen};
 
-use super::checkpoint::{CheckpointError, read_tensors, write_tensors};
+use super::checkpoint::{CheckpointError, first_line, read_tensors, write_tensors};
 use super::trace::GaussianTrace;
 
 /// A linear probe from the latent to x and y.
@@ -162,7 +162,7 @@ impl Probe {
                 .to_dtype(DType::F32)
                 .and_then(|t| t.flatten_all())
                 .and_then(|t| t.to_vec1::<f32>());
-            let flat = flat.map_err(|error| refuse(error.to_string()))?;
+            let flat = flat.map_err(|error| refuse(first_line(&error)))?;
             if flat.len() == len && flat.iter().all(|v| v.is_finite()) {
                 Ok(flat)
             } else {

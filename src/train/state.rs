@@ -80,9 +80,9 @@ impl State {
     /// Reads what [`Self::save`] wrote, and fills the model's parameters.
     pub fn load(model: &Model, folder: &Path) -> Result<Self, TrainError> {
         let path = folder.join(STATE);
-        let bytes = std::fs::read(&path).map_err(|source| CheckpointError::File {
+        let bytes = std::fs::read(&path).map_err(|cause| CheckpointError::File {
             path: path.clone(),
-            source,
+            cause,
         })?;
         let refuse = |what: String| CheckpointError::Weights {
             path: path.clone(),
@@ -109,7 +109,7 @@ impl State {
             network
                 .theta()
                 .set(&theta)
-                .map_err(|error| refuse(error.to_string()))?;
+                .map_err(|error| refuse(checkpoint::first_line(&error)))?;
         }
         let mut moments = BTreeMap::new();
         for (name, updates) in counters.moment_updates {
@@ -150,5 +150,5 @@ pub fn append_metrics(folder: &Path, progress: &Progress, rate: f64) -> Result<(
         .append(true)
         .open(&path)
         .and_then(|mut file| writeln!(file, "{line}"))
-        .map_err(|source| CheckpointError::File { path, source }.into())
+        .map_err(|cause| CheckpointError::File { path, cause }.into())
 }

@@ -3,9 +3,15 @@
 
 mod align;
 mod architecture;
+mod common;
 mod damage;
 mod data;
+mod errors;
 mod golden;
 mod info;
 mod opening;
+mod pipeline;
+mod portable;
 mod readme;
+mod resume;
+mod topics;

@@ -1,8 +1,12 @@
-//! Backward passes against finite differences.
+//! Backward passes against finite differences, and the choice of the code path.
+
+use std::ffi::OsStr;
 
 use candle_core::{Device, Result, Tensor, Var};
+use pulp::Arch;
 
 use super::cell::{Cell, Sizes};
+use super::choose;
 use super::weight_norm::{Stretch, WeightNorm};
 
 fn numbers(n: usize, seed: f32) -> Vec<f32> {
@@ -109,4 +113,14 @@ fn the_cell_has_the_gradient_of_its_formula() -> Result<()> {
     check(&h, |h| run(h, &x, &w), 1)?;
     check(&x, |x| run(&h, x, &w), 1)?;
     check(&w, |w| run(&h, &x, w), 5)
+}
+
+#[test]
+fn the_portable_path_is_taken_when_asked_for_and_only_then() {
+    let is_scalar = |value: &str| matches!(choose(Some(OsStr::new(value))), Arch::Scalar);
+    assert!(is_scalar("1") && is_scalar("yes") && is_scalar(""));
+    let best = std::mem::discriminant(&Arch::new());
+    for value in [None, Some(OsStr::new("0"))] {
+        assert_eq!(std::mem::discriminant(&choose(value)), best);
+    }
 }

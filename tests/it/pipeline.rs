@@ -1,0 +1,72 @@
+//! The main job from nothing to the screen, through the program alone.
+#![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+use std::fs;
+
+use crate::common::{answer, poescope, simulated};
+
+#[test]
+fn simulate_info_train_view_eval() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = simulated(folder.path().join("pushes.mcap"), 64, &["--seed", "3"]);
+
+    let listed = answer(poescope().args(["info", "--json"]).arg(&data));
+    let listed: serde_json::Value = serde_json::from_str(&listed).unwrap();
+    let episodes = listed["episodes"].as_array().unwrap();
+    assert_eq!(episodes.len(), 64);
+    assert!(episodes.iter().all(|episode| episode["images"] == 16));
+    assert_eq!(listed["left_out"].as_array().unwrap().len(), 0);
+
+    let run = folder.path().join("run");
+    let mut train = poescope();
+    train.args([
+        "train",
+        "--model",
+        "v-h-p",
+        "--epochs",
+        "2",
+        "--threads",
+        "2",
+    ]);
+    answer(train.arg("--data").arg(&data).arg("--out").arg(&run));
+    let metrics = fs::read_to_string(run.join("metrics.jsonl")).unwrap();
+    let losses: Vec<f64> = metrics
+        .lines()
+        .map(|line| {
+            let line: serde_json::Value = serde_json::from_str(line).unwrap();
+            line["val"]["losses"]["loss"].as_f64().unwrap()
+        })
+        .collect();
+    assert_eq!(losses.len(), 2);
+    assert!(losses.iter().all(|loss| loss.is_finite()), "{losses:?}");
+
+    let print = |keys: &str| {
+        let mut view = poescope();
+        view.args(["view", "--print", "--size", "120x40", "--keys", keys]);
+        view.arg("--data").arg(&data).arg("--model").arg(&run);
+        answer(view.env("NO_COLOR", "1"))
+    };
+    let [on, off, on_again] = ["lllll", "lllll 1", "lllll 1 1"].map(print);
+    // The line that says what the last key did differs.
+    let screen = |text: &str| text.lines().take(39).collect::<Vec<_>>().join("\n");
+    assert!(screen(&on) == screen(&on_again), "{on}\n{on_again}");
+    for what in ["prediction ", "2 H haptic", "9 D prior", "position cm"] {
+        let said = |text: &str| {
+            let line = text.lines().find(|line| line.contains(what)).unwrap();
+            line[line.find(what).unwrap()..].to_owned()
+        };
+        assert_ne!(said(&on), said(&off), "{on}\n{off}");
+    }
+
+    let mut eval = poescope();
+    eval.args(["eval", "--json", "--split", "val"]);
+    let report = answer(eval.arg("--data").arg(&data).arg("--model").arg(&run));
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["episodes"], 6);
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 11);
+    assert!(
+        rows.iter()
+            .all(|row| row["model_db"].as_f64().unwrap() > 0.0)
+    );
+}
