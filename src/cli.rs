@@ -152,15 +152,16 @@ pub struct TrainArgs {
     /// A config.toml to train instead of the model's own settings
     #[arg(long)]
     pub config: Option<PathBuf>,
-    /// Epochs over the training split
-    #[arg(long)]
-    pub epochs: Option<usize>,
-    /// Stop after this many minutes instead, with the learning rate decayed to it
-    #[arg(long)]
+    /// Epochs over the training split [default: 20, or none with --minutes]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub epochs: Option<u64>,
+    /// Minutes to train for; with --epochs too, whichever comes first
+    #[arg(long, value_parser = parse_minutes)]
     pub minutes: Option<f64>,
-    /// Seed of initial weights, order, noise and masks
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
+    /// Seed of initial weights, order, noise and masks, and of the validation split where the data name none
+    /// [default: 0]
+    #[arg(long)]
+    pub seed: Option<u64>,
     /// Worker threads [default: one per core]
     #[arg(long)]
     pub threads: Option<usize>,
@@ -206,6 +207,14 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
     parse()
         .filter(|&(columns, rows)| (1..=1000).contains(&columns) && (1..=1000).contains(&rows))
         .ok_or_else(|| format!("{text:?} is not COLUMNSxROWS, for example 120x40"))
+}
+
+fn parse_minutes(text: &str) -> Result<f64, String> {
+    let minutes = text
+        .parse::<f64>()
+        .ok()
+        .filter(|minutes| minutes.is_finite() && *minutes > 0.0);
+    minutes.ok_or_else(|| format!("{text:?} is not a positive number of minutes"))
 }
 
 fn parse_split(text: &str) -> Result<Split, String> {

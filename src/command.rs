@@ -7,6 +7,10 @@ pub mod simulate;
 pub mod train;
 pub mod view;
 
+use std::io::{self, ErrorKind, Write};
+
+use anyhow::Context;
+
 use crate::cli::{Cli, Command};
 
 /// Runs what the command line asks for.
@@ -17,5 +21,16 @@ pub fn dispatch(cli: Cli) -> anyhow::Result<()> {
         Command::Simulate(args) => simulate::run(&args),
         Command::Train(args) => train::run(&args),
         Command::Eval(args) => eval::run(&args),
+    }
+}
+
+/// Writes to standard output. A reader that has seen enough, like `head`, is no error.
+fn say(text: &str) -> anyhow::Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(error).context("writing to standard output")
+        }
+        _ => Ok(()),
     }
 }

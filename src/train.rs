@@ -18,13 +18,12 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use self::batch::Batch;
-use self::schedule::Budget;
 use self::state::State;
 use self::step::Losses;
 use self::validate::Validation;
 use crate::episode::Episode;
 use crate::model::Model;
-use crate::model::checkpoint::CheckpointError;
+use crate::model::checkpoint::{CheckpointError, first_line};
 use crate::model::observation::ObserveError;
 
 /// Why training stopped early.
@@ -37,8 +36,8 @@ pub enum TrainError {
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
     /// A tensor operation failed.
-    #[error("computing")]
-    Tensor(#[from] candle_core::Error),
+    #[error("computing: {0}")]
+    Tensor(String),
     /// A loss was no number.
     #[error(
         "the loss of update {update} is not finite ({losses:?}; episodes {}); lower `training.learning_rate`",
@@ -57,6 +56,12 @@ pub enum TrainError {
     Run(String),
 }
 
+impl From<candle_core::Error> for TrainError {
+    fn from(error: candle_core::Error) -> Self {
+        Self::Tensor(first_line(&error))
+    }
+}
+
 /// What a run works on.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
@@ -66,10 +71,6 @@ pub struct Run<'a> {
     pub val: &'a [Episode],
     /// Where checkpoints and metrics go.
     pub folder: &'a Path,
-    /// Seed of order, noise and masks.
-    pub seed: u64,
-    /// When it ends.
-    pub budget: Budget,
     /// Set from outside to stop after the current update.
     pub stop: &'a AtomicBool,
 }
@@ -111,13 +112,12 @@ pub fn run(
     mut report: impl FnMut(&Progress),
 ) -> Result<Outcome, TrainError> {
     let training = &model.config.training;
+    let (seed, budget) = (state.origin.seed, state.origin.budget);
     let epoch_updates = (run.train.len() / training.batch).max(1) as u64;
     let mut running: Option<Losses> = None;
     let mut last_save = Instant::now();
     loop {
-        let fraction = run
-            .budget
-            .fraction(state.update, epoch_updates, state.elapsed);
+        let fraction = budget.fraction(state.update, epoch_updates, state.elapsed);
         if fraction >= 1.0 || run.stop.load(Ordering::Relaxed) {
             state.save(model, run.folder)?;
             return Ok(if fraction >= 1.0 {
@@ -131,11 +131,11 @@ pub fn run(
             run.train.len(),
             training.batch,
             epoch_updates,
-            run.seed,
+            seed,
             state.update,
         );
         let episodes: Vec<&Episode> = chosen.into_iter().map(|i| &run.train[i]).collect();
-        let batch = Batch::new(&model.config, &episodes, run.seed, state.update)?;
+        let batch = Batch::new(&model.config, &episodes, Some((seed, state.update)))?;
         let rate = schedule::learning_rate(training, state.update, fraction);
         let losses = step::update(model, &batch, &mut state.moments, rate)?;
         if !losses.is_finite() {
@@ -161,9 +161,7 @@ pub fn run(
         let progress = Progress {
             update: state.update,
             epoch_updates,
-            fraction: run
-                .budget
-                .fraction(state.update, epoch_updates, state.elapsed),
+            fraction: budget.fraction(state.update, epoch_updates, state.elapsed),
             elapsed: state.elapsed,
             losses: mean,
             validation,

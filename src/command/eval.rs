@@ -1,12 +1,12 @@
 //! `poescope eval`: open-loop prediction of a model, horizon by horizon, beside the trivial predictors.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
+use std::path::Path;
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::sample;
+use super::{sample, say};
 use crate::cli::EvalArgs;
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -54,11 +54,17 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         );
     }
     let mut episodes = Vec::new();
-    for (index, split) in dataset.splits(0).into_iter().enumerate() {
+    for (index, split) in dataset.splits(seed(&folder)).into_iter().enumerate() {
         if split != args.split {
             continue;
         }
-        let episode = dataset.load(index, config.layout())?;
+        let episode = match dataset.load(index, config.layout()) {
+            Ok(episode) => episode,
+            Err(error) => {
+                eprintln!("left out: {error}");
+                continue;
+            }
+        };
         let missing = observation::missing(config, &episode);
         if !missing.is_empty() {
             bail!(
@@ -98,9 +104,14 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     } else {
         markdown(&report)
     };
-    std::io::stdout()
-        .write_all(text.as_bytes())
-        .context("writing to standard output")
+    say(&text)
+}
+
+/// The seed that the model's training cut its validation split by; 0 where its report does not say.
+fn seed(folder: &Path) -> u64 {
+    let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
+    report["seed"].as_u64().unwrap_or(0)
 }
 
 /// The report as a Markdown table.

@@ -2,11 +2,10 @@
 
 mod table;
 
-use std::io::{self, ErrorKind, Write};
-
 use anyhow::Context;
 use serde::Serialize;
 
+use super::say;
 use crate::cli::InfoArgs;
 use crate::data::{Dataset, FileReport, LeftOut};
 use crate::episode::{EpisodeMeta, EpisodeSource};
@@ -42,11 +41,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
     } else {
         table::render(&info)
     };
-    match io::stdout().lock().write_all(text.as_bytes()) {
-        // Whoever reads has seen enough (`| head`).
-        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
-        other => other.context("writing to standard output"),
-    }
+    say(&text)
 }
 
 fn gather(args: &InfoArgs) -> anyhow::Result<Info> {

@@ -4,6 +4,7 @@ use anyhow::Context;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use super::say;
 use crate::{
     cli::SimulateArgs,
     data::DatasetWriter,
@@ -17,16 +18,11 @@ const SHEET_ROWS: usize = 12;
 const CHUNK_PER_THREAD: usize = 8;
 
 /// Runs it.
-#[expect(
-    clippy::print_stdout,
-    reason = "the distribution of what was recorded is this command's answer"
-)]
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut writer = DatasetWriter::create(&args.out)?;
     let motions = record_all(args, &mut |recording| Ok(writer.write(recording)?))?;
     writer.finish()?;
-    println!("{motions}");
-    Ok(())
+    say(&format!("{motions}\n"))
 }
 
 /// Simulates all episodes and hands them to `sink` in the order of their index, whatever the threads.

@@ -1,56 +1,64 @@
 //! `poescope train`: opens a dataset, trains a model on it, leaves a checkpoint with its probe and its report.
 
-use std::io::IsTerminal;
-use std::path::Path;
+mod finish;
+mod sets;
+mod show;
+
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::{Context, bail};
 use candle_core::Device;
-use indicatif::{ProgressBar, ProgressStyle};
-use serde_json::json;
 
+use self::sets::Sets;
 use crate::cli::TrainArgs;
 use crate::data::Dataset;
-use crate::episode::{Episode, EpisodeSource, Layout, Split};
-use crate::eval;
+use crate::episode::EpisodeSource;
 use crate::model::Model;
 use crate::model::checkpoint;
 use crate::model::config::Config;
-use crate::model::inspect::Inspector;
-use crate::model::observation::observe;
-use crate::model::probe::{Positions, Probe};
-use crate::model::trace::Alphas;
 use crate::train::schedule::Budget;
-use crate::train::state::{METRICS, STATE, State};
-use crate::train::validate::{Validation, validate};
-use crate::train::{self, Outcome, Progress, Run, statistics};
+use crate::train::state::{self, Origin, STATE, State};
+use crate::train::{self, Outcome, Run, statistics};
 
 /// Epochs when neither epochs nor minutes are asked for.
-const EPOCHS: usize = 20;
+const EPOCHS: u64 = 20;
 
 /// Runs it.
 pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
-    if let Some(threads) = args.threads {
-        rayon::ThreadPoolBuilder::new()
-            .num_threads(threads.max(1))
-            .build_global()
-            .context("starting threads")?;
-    }
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        // The second signal ends the process at once.
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
-    }
-    let mut config = if args.resume {
-        checkpoint::load_config(&args.out.join(checkpoint::CONFIG))
-            .with_context(|| format!("nothing to resume in {}", args.out.display()))?
-    } else {
-        fresh_config(args)?
+    let stop = stop_on_signals()?;
+    let resumed = args.resume.then(|| resume(args)).transpose()?;
+    let (mut config, origin) = match &resumed {
+        Some((config, origin)) => (config.clone(), Some(origin)),
+        None => (fresh_config(args)?, None),
     };
+    let threads = args
+        .threads
+        .or(origin.map(|origin| origin.threads))
+        .unwrap_or(0);
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .context("starting threads")?;
     let dataset = Dataset::open_with(&args.data, &args.mapping.topics)?;
-    let sets = load(&dataset, config.layout(), args.seed)?;
+    let origin = match origin {
+        Some(origin) => same_run(args, origin, &dataset)?,
+        None => Origin {
+            command: command_line(),
+            seed: args.seed.unwrap_or(0),
+            data_hash: dataset.data_hash().to_owned(),
+            threads: rayon::current_num_threads(),
+            budget: Budget {
+                epochs: args
+                    .epochs
+                    .or_else(|| args.minutes.is_none().then_some(EPOCHS)),
+                minutes: args.minutes,
+            },
+        },
+    };
+    let Some(sets) = Sets::load(&dataset, config.layout(), origin.seed, &stop) else {
+        bail!("stopped before training began");
+    };
     if sets.train.len() < config.training.batch {
         bail!(
             "{} has {} episodes to train on, a batch needs {}; record more, or lower `training.batch` in a --config",
@@ -59,59 +67,54 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
             config.training.batch
         );
     }
-    eprintln!(
-        "{}: {} episodes to train on, {} for validation{}",
-        dataset.name(),
-        sets.train.len(),
-        sets.val.len(),
-        if sets.left_out > 0 {
-            format!(", {} left out (see `poescope info`)", sets.left_out)
-        } else {
-            String::new()
-        },
-    );
+    eprintln!("{}: {sets}", dataset.name());
     statistics::complete(&mut config, &sets.train);
-    let model = Model::new(config, args.seed, &Device::Cpu)?;
+    let model = Model::new(config, origin.seed, &Device::Cpu)?;
     std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
-    let mut state = if args.resume {
-        State::load(&model, &args.out)?
-    } else {
-        State::default()
+    let mut state = match resumed {
+        Some(_) => State::load(&model, &args.out)?,
+        None => State::new(origin.clone()),
     };
-    let budget = Budget {
-        epochs: args
-            .epochs
-            .or_else(|| args.minutes.is_none().then_some(EPOCHS)),
-        minutes: args.minutes,
-    };
-    let bar = bar();
+    state.origin = origin;
+    // A probe belongs to the weights it was fitted on, and those are about to change.
+    finish::remove(&args.out)?;
+    state::forget_metrics_after(&args.out, state.update)?;
+    let bar = show::bar();
     let run = Run {
         train: &sets.train,
         val: &sets.val,
         folder: &args.out,
-        seed: args.seed,
-        budget,
         stop: &stop,
     };
-    let outcome = train::run(&model, &mut state, run, |progress| show(&bar, progress))?;
-    bar.finish();
-    let validation = validate(&model, &sets.val)?;
-    finish(&model, &sets, &args.out)?;
-    let report = Report {
-        args,
-        dataset: &dataset,
-        sets: &sets,
-        state: &state,
-        model: &model,
-    };
-    report.write(&validation)?;
+    let outcome = train::run(&model, &mut state, run, |progress| {
+        show::progress(&bar, progress);
+    })?;
+    bar.finish_and_clear();
+    if state.update > 0 {
+        eprintln!("saved {}; fitting the position probe", args.out.display());
+        finish::write(&model, &sets, &state, &dataset, &args.out)?;
+    }
     match outcome {
         Outcome::Finished => eprintln!("trained: {}", args.out.display()),
-        Outcome::Stopped => {
-            eprintln!("stopped and saved; go on with the same command and --resume");
-        }
+        Outcome::Stopped => eprintln!("stopped; go on with the same command and --resume"),
     }
     Ok(())
+}
+
+/// Ctrl-C and SIGTERM ask for a stop; the second one ends the process at once.
+fn stop_on_signals() -> anyhow::Result<Arc<AtomicBool>> {
+    let stop = Arc::new(AtomicBool::new(false));
+    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
+        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
+        signal_hook::flag::register(signal, Arc::clone(&stop))?;
+    }
+    Ok(stop)
+}
+
+/// What was typed, but for the program's folder.
+fn command_line() -> String {
+    let typed: Vec<String> = std::env::args().skip(1).collect();
+    format!("poescope {}", typed.join(" "))
 }
 
 fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
@@ -133,175 +136,49 @@ fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
     }
 }
 
-/// The episodes of a run.
-struct Sets {
-    train: Vec<Episode>,
-    val: Vec<Episode>,
-    left_out: usize,
+/// The config and the origin of the run in the run folder.
+fn resume(args: &TrainArgs) -> anyhow::Result<(Config, Origin)> {
+    let nothing = || format!("nothing to resume in {}", args.out.display());
+    let config =
+        checkpoint::load_config(&args.out.join(checkpoint::CONFIG)).with_context(nothing)?;
+    let origin = Origin::read(&args.out).with_context(nothing)?;
+    Ok((config, origin))
 }
 
-fn load(dataset: &Dataset, layout: Layout, seed: u64) -> anyhow::Result<Sets> {
-    let mut sets = Sets {
-        train: Vec::new(),
-        val: Vec::new(),
-        left_out: 0,
+/// The origin to go on with: the run's own, but for a budget that is asked for anew.
+fn same_run(args: &TrainArgs, origin: &Origin, dataset: &Dataset) -> anyhow::Result<Origin> {
+    if origin.data_hash != dataset.data_hash() {
+        bail!(
+            "{} is not the data this run was started on (hash {}, was {}); resume with that, or start a new --out",
+            args.data.display(),
+            dataset.data_hash(),
+            origin.data_hash
+        );
+    }
+    if let Some(seed) = args.seed.filter(|&seed| seed != origin.seed) {
+        bail!(
+            "--seed {seed} is not this run's, which is {}; leave it out, or start a new --out",
+            origin.seed
+        );
+    }
+    if rayon::current_num_threads() != origin.threads {
+        eprintln!(
+            "this run was started with {} threads; with {} its sums round differently from here on",
+            origin.threads,
+            rayon::current_num_threads()
+        );
+    }
+    let asked = Budget {
+        epochs: args.epochs,
+        minutes: args.minutes,
     };
-    let bar = bar();
-    bar.set_length(dataset.metas().len() as u64);
-    bar.set_style(ProgressStyle::with_template(
-        "reading {bar:30} {pos}/{len} episodes",
-    )?);
-    for (index, split) in dataset.splits(seed).into_iter().enumerate() {
-        bar.inc(1);
-        if split == Split::Test {
-            continue;
-        }
-        let episode = dataset.load(index, layout)?;
-        let steps = sets.train.first().map_or(episode.steps(), Episode::steps);
-        // An odd recording would teach the oddity; one of another length does not fit a batch.
-        if !episode.flags.is_empty() || episode.steps() != steps {
-            sets.left_out += 1;
-        } else if split == Split::Val {
-            sets.val.push(episode);
-        } else {
-            sets.train.push(episode);
-        }
-    }
-    bar.finish_and_clear();
-    Ok(sets)
-}
-
-fn bar() -> ProgressBar {
-    if std::io::stderr().is_terminal() {
-        ProgressBar::new(1000)
+    let budget = if asked == Budget::default() {
+        origin.budget
     } else {
-        ProgressBar::hidden()
-    }
-}
-
-fn show(bar: &ProgressBar, progress: &Progress) {
-    let losses = progress.losses;
-    let minutes = progress.elapsed.as_secs_f64() / 60.0;
-    let left = minutes / progress.fraction.max(1e-9) * (1.0 - progress.fraction);
-    let line = format!(
-        "epoch {} update {}  loss {:.2}  vision {:.2}  windows {:.2}  KL {:.2}  {minutes:.1} min, {left:.1} left",
-        progress.update / progress.epoch_updates,
-        progress.update,
-        losses.loss,
-        losses.vision,
-        losses.windows,
-        losses.kl,
-    );
-    bar.set_style(
-        ProgressStyle::with_template("{bar:20} {msg}")
-            .unwrap_or_else(|_| ProgressStyle::default_bar()),
-    );
-    bar.set_position((progress.fraction * 1000.0) as u64);
-    bar.set_message(line.clone());
-    if let Some(Validation { losses, psnr_db }) = &progress.validation {
-        let mean = psnr_db.iter().sum::<f64>() / psnr_db.len().max(1) as f64;
-        let line = format!(
-            "{line}  | val vision {:.2} KL {:.2} open loop {mean:.2} dB",
-            losses.vision, losses.kl
-        );
-        if bar.is_hidden() {
-            eprintln!("{line}");
-        } else {
-            bar.println(line);
-        }
-    }
-}
-
-/// Filtered beliefs of some episodes on the mean path, with the recorded positions.
-fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Result<Positions> {
-    let config = &inspector.model().config;
-    let mut positions = Positions::default();
-    positions.beliefs.latent = config.latent;
-    for episode in episodes {
-        let Some(object) = &episode.object else {
-            continue;
-        };
-        let seen = observe(config, episode)?;
-        let experts = inspector.encode(&seen)?;
-        let beliefs =
-            inspector.filter(&experts, &Alphas::trained(seen.beliefs, config.switches()))?;
-        positions.beliefs.mean.extend(beliefs.posterior.mean);
-        positions.beliefs.log_var.extend(beliefs.posterior.log_var);
-        positions.truth.extend(
-            object[config.frame_stack..]
-                .iter()
-                .map(|pose| [pose.x, pose.y]),
-        );
-    }
-    Ok(positions)
-}
-
-/// Writes what goes beside the weights: the position probe and the mean training frame.
-fn finish(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<()> {
-    let inspector = Inspector::new(model)?;
-    let fit = positions(&inspector, &sets.train)?;
-    let held_out = positions(
-        &inspector,
-        if sets.val.is_empty() {
-            &sets.train
-        } else {
-            &sets.val
-        },
-    )?;
-    if let Some(probe) = Probe::fit(&fit, &held_out) {
-        probe.write(&folder.join(checkpoint::PROBE))?;
-    }
-    let pixels = eval::mean_frame(sets.train.iter())
-        .into_iter()
-        .map(|p| (p * 255.0).round() as u8)
-        .collect();
-    let side = model.config.frame_size as u32;
-    let frame = image::GrayImage::from_raw(side, side, pixels)
-        .context("frames of another size than the model's")?;
-    let mut png = std::io::Cursor::new(Vec::new());
-    frame.write_to(&mut png, image::ImageFormat::Png)?;
-    checkpoint::write_atomic(&folder.join(checkpoint::MEAN_FRAME), &png.into_inner())?;
-    Ok(())
-}
-
-/// What was typed, but for the program's folder.
-fn command_line() -> String {
-    let typed: Vec<String> = std::env::args().skip(1).collect();
-    format!("poescope {}", typed.join(" "))
-}
-
-/// How a checkpoint came to be.
-struct Report<'a> {
-    args: &'a TrainArgs,
-    dataset: &'a Dataset,
-    sets: &'a Sets,
-    state: &'a State,
-    model: &'a Model,
-}
-
-impl Report<'_> {
-    fn write(&self, validation: &Validation) -> anyhow::Result<()> {
-        let updates_of_an_epoch = (self.sets.train.len() / self.model.config.training.batch).max(1);
-        let report = json!({
-            "poescope": env!("CARGO_PKG_VERSION"),
-            "command": command_line(),
-            "model": self.model.config.name,
-            "parameters": self.model.parameters(),
-            "data": self.dataset.name(),
-            "data_hash": self.dataset.data_hash(),
-            "train_episodes": self.sets.train.len(),
-            "val_episodes": self.sets.val.len(),
-            "left_out": self.sets.left_out,
-            "seed": self.args.seed,
-            "updates": self.state.update,
-            "epochs": self.state.update as f64 / updates_of_an_epoch as f64,
-            "minutes": self.state.elapsed.as_secs_f64() / 60.0,
-            "threads": rayon::current_num_threads(),
-            "val": validation,
-            "metrics": METRICS,
-        });
-        let text = serde_json::to_string_pretty(&report)? + "\n";
-        checkpoint::write_atomic(&self.args.out.join(checkpoint::REPORT), text.as_bytes())?;
-        Ok(())
-    }
+        asked
+    };
+    Ok(Origin {
+        budget,
+        ..origin.clone()
+    })
 }

@@ -1,6 +1,6 @@
 //! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
 
-use std::io::{self, IsTerminal, Write};
+use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use crossterm::terminal::size as terminal_size;
 use ratatui::layout::Size;
 use ratatui_image::picker::ProtocolType;
 
-use super::sample;
+use super::{sample, say};
 use crate::cli::{ImageProtocol, ViewArgs};
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -56,7 +56,7 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
     if !in_terminal {
         wait(&mut app)?;
-        return write(&print(&app.session.snapshot(), &app.face, size));
+        return say(&print(&app.session.snapshot(), &app.face, size));
     }
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
         Ended::Quit => Ok(()),
@@ -79,8 +79,10 @@ fn open(args: &ViewArgs) -> anyhow::Result<Session> {
     let mut models: Vec<Box<dyn Predictor>> = Vec::new();
     for folder in folders {
         let (model, probe) = checkpoint::load(&folder)?;
-        let first = dataset.load(0, model.config.layout())?;
-        suits(&model.config, &first).with_context(|| path.display().to_string())?;
+        // One that cannot be read says so when it is shown; the others still open.
+        if let Ok(first) = dataset.load(0, model.config.layout()) {
+            suits(&model.config, &first).with_context(|| path.display().to_string())?;
+        }
         let source = folder.display().to_string();
         models.push(Box::new(Trained::new(model, probe, source)?));
     }
@@ -122,17 +124,6 @@ fn images(protocol: ImageProtocol) -> Images {
         ImageProtocol::Kitty => Images::Force(ProtocolType::Kitty),
         ImageProtocol::Sixel => Images::Force(ProtocolType::Sixel),
         ImageProtocol::Iterm2 => Images::Force(ProtocolType::Iterm2),
-    }
-}
-
-/// A reader that has seen enough, like `head`, is no error.
-fn write(text: &str) -> anyhow::Result<()> {
-    let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(error).context("standard output")
-        }
-        _ => Ok(()),
     }
 }
 

@@ -1,7 +1,7 @@
 //! A checkpoint: a folder with `config.toml`, `weights.safetensors`, `probe.safetensors` and `report.json`.
 
 use std::collections::HashMap;
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use candle_core::{DType, Device, Tensor};
@@ -76,7 +76,11 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
         cause,
     };
     let temporary = path.with_extension("part");
-    std::fs::write(&temporary, bytes).map_err(file_error)?;
+    let mut file = std::fs::File::create(&temporary).map_err(file_error)?;
+    // On disk before it has its name: a power cut must not leave an empty file under it.
+    file.write_all(bytes)
+        .and_then(|()| file.sync_all())
+        .map_err(file_error)?;
     std::fs::rename(&temporary, path).map_err(file_error)
 }
 

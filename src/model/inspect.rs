@@ -108,17 +108,17 @@ impl<M: Borrow<Model>> Inspector<M> {
         horizon: usize,
     ) -> Result<GaussianTrace> {
         let config = &self.model().config;
-        let Some(known) = experts.controls.get(from..from + horizon) else {
-            candle_core::bail!(
-                "a rollout of {horizon} steps from belief {from} needs controls that were not recorded"
-            );
-        };
         if horizon == 0 {
             return Ok(GaussianTrace {
                 latent: config.latent,
                 ..GaussianTrace::default()
             });
         }
+        let Some(known) = experts.controls.get(from..from + horizon) else {
+            candle_core::bail!(
+                "a rollout of {horizon} steps from belief {from} needs controls that were not recorded"
+            );
+        };
         let hidden = &beliefs.hidden[from * config.hidden..(from + 1) * config.hidden];
         let hidden = Tensor::from_slice(hidden, (1, config.hidden), &Device::Cpu)?;
         let z = Tensor::from_slice(
@@ -138,6 +138,9 @@ impl<M: Borrow<Model>> Inspector<M> {
 
     /// What expert `index` would see for each latent, `(n, Z)` row major: `(n, outputs)` numbers.
     pub fn decode(&self, index: usize, latents: &[f32]) -> Result<Vec<f32>> {
+        if latents.is_empty() {
+            return Ok(Vec::new());
+        }
         let latent = self.model().config.latent;
         let latents = Tensor::from_slice(latents, (latents.len() / latent, latent), &Device::Cpu)?;
         self.model().decoders[index]

@@ -28,7 +28,7 @@ impl Slot {
             match axes {
                 [] => visit(start as usize),
                 [(len, stride)] => {
-                    (0..*len as isize).for_each(|i| visit((start + i * stride) as usize))
+                    (0..*len as isize).for_each(|i| visit((start + i * stride) as usize));
                 }
                 [(len, stride), rest @ ..] => {
                     for i in 0..*len as isize {
@@ -188,7 +188,7 @@ impl Network {
 
     /// Replaces every parameter by what `find` has for each slot, in the slot's own order.
     pub fn fill(&self, mut find: impl FnMut(&Slot) -> Result<Vec<f32>>) -> Result<()> {
-        let mut theta = self.theta.to_vec1::<f32>()?;
+        let mut theta = vec![0.0; self.theta.elem_count()];
         for slot in self.slots() {
             let numbers = find(slot)?;
             let wanted: usize = slot.shape.iter().product();

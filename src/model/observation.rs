@@ -117,19 +117,26 @@ pub fn suits(config: &Config, episode: &Episode) -> Result<(), Unsuited> {
     Ok(())
 }
 
-/// The windows of a modality and the names of its channels; none for vision or where not recorded.
-fn channels_of(episode: &Episode, modality: Modality) -> Option<(&[f32], &'static [&'static str])> {
+/// Names of all channels that windows of a modality have; none for vision.
+pub fn known(modality: Modality) -> &'static [&'static str] {
     match modality {
-        Modality::Vision => None,
-        Modality::Haptic => episode
-            .haptic
-            .as_deref()
-            .map(|data| (data, &HAPTIC_CHANNELS[..])),
-        Modality::Proprio => episode
-            .proprio
-            .as_deref()
-            .map(|data| (data, &PROPRIO_CHANNELS[..])),
+        Modality::Vision => &[],
+        Modality::Haptic => &HAPTIC_CHANNELS,
+        Modality::Proprio => &PROPRIO_CHANNELS,
     }
+}
+
+/// The windows of a modality, `(T, W, 6)`, and the names of its channels; none for vision or where not recorded.
+pub fn channels_of(
+    episode: &Episode,
+    modality: Modality,
+) -> Option<(&[f32], &'static [&'static str])> {
+    let data = match modality {
+        Modality::Vision => None,
+        Modality::Haptic => episode.haptic.as_deref(),
+        Modality::Proprio => episode.proprio.as_deref(),
+    };
+    data.map(|data| (data, known(modality)))
 }
 
 /// What each expert of a model sees of one episode, belief by belief.

@@ -1,7 +1,7 @@
 //! The position probe: the object's place on the table, read linearly from a belief's mean.
 //!
 //! `p̂ = W μ + b` by least squares; covariance `P = W Σ Wᵀ + R_p`, with R_p the positive semidefinite part of the
-//! residuals' covariance less the mean of `W Σ Wᵀ` (D11): the residuals already contain the belief's own spread.
+//! residuals' second moment less the mean of `W Σ Wᵀ` (D11): the residuals already contain the belief's own spread.
 
 use std::path::Path;
 

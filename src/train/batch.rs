@@ -51,12 +51,12 @@ pub fn choose(
 }
 
 impl Batch {
-    /// The batch of update number `update`. Episodes must be of one length.
+    /// A batch with the noise and masks of a seed and an update; without, on the mean path with every expert. Episodes
+    /// must be of one length.
     pub fn new(
         config: &Config,
         episodes: &[&Episode],
-        seed: u64,
-        update: u64,
+        draws: Option<(u64, u64)>,
     ) -> Result<Self, TrainError> {
         let observed: Vec<Observations> = episodes
             .par_iter()
@@ -87,23 +87,24 @@ impl Batch {
             (count, beliefs - 1, Config::CONTROL),
             &Device::Cpu,
         )?;
-        let mut rng = generator(seed, 2, update);
-        let noise: Vec<f32> = (0..count * beliefs * config.latent)
-            .map(|_| rng.sample(StandardNormal))
-            .collect();
-        let noise = Tensor::from_vec(noise, (count, beliefs, config.latent), &Device::Cpu)?;
         let switches = config.switches();
         let mut alphas = vec![1.0_f32; count * beliefs * switches];
-        if config.training.masks {
-            for episode in alphas.chunks_exact_mut(beliefs * switches) {
-                let path = masks::path(config.experts.len(), beliefs, &mut rng);
-                for (row, set) in episode.chunks_exact_mut(switches).zip(path) {
-                    for (expert, alpha) in row[..switches - 1].iter_mut().enumerate() {
-                        *alpha = f32::from(set.contains(expert));
+        let mut noise = vec![0.0_f32; count * beliefs * config.latent];
+        if let Some((seed, update)) = draws {
+            let mut rng = generator(seed, 2, update);
+            noise.fill_with(|| rng.sample(StandardNormal));
+            if config.training.masks {
+                for episode in alphas.chunks_exact_mut(beliefs * switches) {
+                    let path = masks::path(config.experts.len(), beliefs, &mut rng);
+                    for (row, set) in episode.chunks_exact_mut(switches).zip(path) {
+                        for (expert, alpha) in row[..switches - 1].iter_mut().enumerate() {
+                            *alpha = f32::from(set.contains(expert));
+                        }
                     }
                 }
             }
         }
+        let noise = Tensor::from_vec(noise, (count, beliefs, config.latent), &Device::Cpu)?;
         let alphas = Tensor::from_vec(alphas, (count, beliefs, switches), &Device::Cpu)?;
         Ok(Self {
             episodes: count,

@@ -2,13 +2,15 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::config::Training;
 
 /// When a run ends: whichever comes first.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Budget {
     /// Epochs over the training set.
-    pub epochs: Option<usize>,
+    pub epochs: Option<u64>,
     /// Minutes of training over all sittings; with this a run depends on the machine's speed.
     pub minutes: Option<f64>,
 }
@@ -18,7 +20,7 @@ impl Budget {
     pub fn fraction(&self, updates: u64, epoch_updates: u64, elapsed: Duration) -> f64 {
         let by_epochs = self
             .epochs
-            .map(|epochs| updates as f64 / (epochs as u64 * epoch_updates) as f64);
+            .map(|epochs| updates as f64 / (epochs * epoch_updates) as f64);
         let by_minutes = self
             .minutes
             .map(|minutes| elapsed.as_secs_f64() / (minutes * 60.0));

@@ -8,6 +8,7 @@ use std::time::Duration;
 use candle_core::{DType, Device, Tensor};
 use serde::{Deserialize, Serialize};
 
+use super::schedule::Budget;
 use super::{Progress, TrainError};
 use crate::model::Model;
 use crate::model::checkpoint::{self, CheckpointError};
@@ -18,9 +19,26 @@ pub const STATE: &str = "state.safetensors";
 /// The file that metrics are appended to, one JSON object a line.
 pub const METRICS: &str = "metrics.jsonl";
 
+/// What a run was started with, and goes on with.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Origin {
+    /// What was typed to start it, for the report.
+    pub command: String,
+    /// Seed of initial weights, order, noise and masks, and of the validation split where the dataset names none.
+    pub seed: u64,
+    /// Of the dataset.
+    pub data_hash: String,
+    /// Threads that gradients are summed over: another number rounds differently.
+    pub threads: usize,
+    /// When it ends.
+    pub budget: Budget,
+}
+
 /// Where a run is.
 #[derive(Debug, Default)]
 pub struct State {
+    /// What it was started with.
+    pub origin: Origin,
     /// Updates so far.
     pub update: u64,
     /// Time trained, over all sittings.
@@ -32,12 +50,49 @@ pub struct State {
 /// What is stored beside the tensors.
 #[derive(Serialize, Deserialize)]
 struct Counters {
+    origin: Origin,
     update: u64,
     elapsed_secs: f64,
     moment_updates: BTreeMap<String, u32>,
 }
 
+impl Origin {
+    /// Of the run in `folder`.
+    pub fn read(folder: &Path) -> Result<Self, CheckpointError> {
+        Ok(Counters::read(&folder.join(STATE))?.origin)
+    }
+}
+
+impl Counters {
+    fn read(path: &Path) -> Result<Self, CheckpointError> {
+        let bytes = std::fs::read(path).map_err(|cause| CheckpointError::File {
+            path: path.to_owned(),
+            cause,
+        })?;
+        let refuse = |what: String| CheckpointError::Weights {
+            path: path.to_owned(),
+            what,
+        };
+        let (_, header) = safetensors::SafeTensors::read_metadata(&bytes)
+            .map_err(|error| refuse(error.to_string()))?;
+        let text = header
+            .metadata()
+            .as_ref()
+            .and_then(|metadata| metadata.get("counters"));
+        let text = text.ok_or_else(|| refuse("the counters are missing".to_owned()))?;
+        serde_json::from_str(text).map_err(|error| refuse(error.to_string()))
+    }
+}
+
 impl State {
+    /// A run that has not begun.
+    pub fn new(origin: Origin) -> Self {
+        Self {
+            origin,
+            ..Self::default()
+        }
+    }
+
     /// Writes the state, and the weights as a checkpoint that can be looked at: in half precision, which costs a
     /// hundredth of a decibel at most. The state keeps every bit.
     pub fn save(&self, model: &Model, folder: &Path) -> Result<(), TrainError> {
@@ -55,6 +110,7 @@ impl State {
             tensors.push((format!("{name}.second"), flat(&moments.second)?));
         }
         let counters = Counters {
+            origin: self.origin.clone(),
             update: self.update,
             elapsed_secs: self.elapsed.as_secs_f64(),
             moment_updates: self
@@ -80,23 +136,11 @@ impl State {
     /// Reads what [`Self::save`] wrote, and fills the model's parameters.
     pub fn load(model: &Model, folder: &Path) -> Result<Self, TrainError> {
         let path = folder.join(STATE);
-        let bytes = std::fs::read(&path).map_err(|cause| CheckpointError::File {
-            path: path.clone(),
-            cause,
-        })?;
+        let counters = Counters::read(&path)?;
         let refuse = |what: String| CheckpointError::Weights {
             path: path.clone(),
             what,
         };
-        let (_, header) = safetensors::SafeTensors::read_metadata(&bytes)
-            .map_err(|error| refuse(error.to_string()))?;
-        let counters = header
-            .metadata()
-            .as_ref()
-            .and_then(|metadata| metadata.get("counters"));
-        let counters = counters.ok_or_else(|| refuse("the counters are missing".to_owned()))?;
-        let counters: Counters =
-            serde_json::from_str(counters).map_err(|error| refuse(error.to_string()))?;
         let tensors = checkpoint::read_tensors(&path)?;
         let numbers = |name: &str| -> Result<Tensor, CheckpointError> {
             tensors
@@ -127,6 +171,7 @@ impl State {
         let elapsed = Duration::try_from_secs_f64(counters.elapsed_secs)
             .map_err(|error| refuse(error.to_string()))?;
         Ok(Self {
+            origin: counters.origin,
             update: counters.update,
             elapsed,
             moments,
@@ -151,4 +196,21 @@ pub fn append_metrics(folder: &Path, progress: &Progress, rate: f64) -> Result<(
         .open(&path)
         .and_then(|mut file| writeln!(file, "{line}"))
         .map_err(|cause| CheckpointError::File { path, cause }.into())
+}
+
+/// Drops the lines of metrics past `update`: a run that was killed had gone further than its last checkpoint.
+pub fn forget_metrics_after(folder: &Path, update: u64) -> Result<(), TrainError> {
+    #[derive(Deserialize)]
+    struct Line {
+        update: u64,
+    }
+    let path = folder.join(METRICS);
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        return Ok(());
+    };
+    let kept = text
+        .lines()
+        .filter(|line| serde_json::from_str::<Line>(line).is_ok_and(|line| line.update <= update));
+    let kept: String = kept.flat_map(|line| [line, "\n"]).collect();
+    Ok(checkpoint::write_atomic(&path, kept.as_bytes())?)
 }

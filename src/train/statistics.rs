@@ -1,9 +1,10 @@
 //! What a model takes from its training set before the first update: the scaling of its channels and the weights of
 //! its error terms (`standard` in the dataset format).
 
-use crate::episode::{Episode, HAPTIC_CHANNELS, PROPRIO_CHANNELS};
+use crate::episode::Episode;
 use crate::modality::{Expert, Modality};
-use crate::model::config::{Channels, Config};
+use crate::model::config::Config;
+use crate::model::observation::{channels_of, known};
 
 /// A channel's scale is at least this: 0.1 N and 0.01 N·m, 1 mm and 1 mm/s, so that a channel that never moves is not
 /// blown up.
@@ -14,39 +15,34 @@ pub fn complete(config: &mut Config, episodes: &[Episode]) {
     if config.step_secs.is_none() {
         config.step_secs = episodes.first().and_then(Episode::step_secs);
     }
-    for modality in [Modality::Haptic, Modality::Proprio] {
-        let haptic = modality == Modality::Haptic;
-        let known = if haptic {
-            HAPTIC_CHANNELS
-        } else {
-            PROPRIO_CHANNELS
-        };
-        let channels = if haptic {
+    for (modality, floors) in [
+        (Modality::Haptic, &FLOORS[0]),
+        (Modality::Proprio, &FLOORS[1]),
+    ] {
+        let channels = if modality == Modality::Haptic {
             &mut config.haptic
         } else {
             &mut config.proprio
         };
         if channels.mean.is_empty() {
-            let windows = episodes.iter().filter_map(|e| {
-                if haptic {
-                    e.haptic.as_ref()
-                } else {
-                    e.proprio.as_ref()
-                }
-            });
-            scale(channels, &known, &FLOORS[usize::from(!haptic)], windows);
+            let moments = moments(episodes, modality);
+            let at: Vec<usize> = channels
+                .columns(known(modality))
+                .map(|(at, _, _)| at)
+                .collect();
+            channels.mean = at.iter().map(|&at| moments[at].0 as f32).collect();
+            channels.scale = at
+                .iter()
+                .map(|&at| (moments[at].1 as f32).max(floors[at]))
+                .collect();
         }
     }
     if config.training.error_weights.is_empty() {
-        let frame = frame_variance(episodes) * (config.frame_stack + 1) as f64;
-        let window: f64 = config
-            .experts
-            .iter()
-            .map(|&expert| window_variance(config, expert, episodes))
-            .sum();
+        let at_mean = error_at_the_mean(config, episodes);
+        let windows: f64 = at_mean[1..].iter().sum();
         // All windows together count as much as the frame, at the predictor that always says the mean.
-        let shared = if window > 0.0 {
-            (frame / window) as f32
+        let shared = if windows > 0.0 {
+            (at_mean[0] / windows) as f32
         } else {
             1.0
         };
@@ -61,10 +57,22 @@ pub fn complete(config: &mut Config, episodes: &[Episode]) {
     }
 }
 
-/// Mean and standard deviation of each of six channels over `(…, 6)` windows.
-fn moments<'a>(windows: impl Iterator<Item = &'a Vec<f32>>) -> [(f64, f64); 6] {
+/// Squared error a belief of each expert's term at the predictor that always says the mean: what the weights balance.
+pub fn error_at_the_mean(config: &Config, episodes: &[Episode]) -> Vec<f64> {
+    let each = |&expert: &Expert| match expert {
+        Expert::Vision => frame_variance(episodes) * (config.frame_stack + 1) as f64,
+        _ => window_variance(config, expert, episodes),
+    };
+    config.experts.iter().map(each).collect()
+}
+
+/// Mean and standard deviation of each of a modality's six channels.
+fn moments(episodes: &[Episode], modality: Modality) -> [(f64, f64); 6] {
     let (mut count, mut sum, mut squares) = (0_usize, [0.0_f64; 6], [0.0_f64; 6]);
-    for sample in windows.flat_map(|window| window.chunks_exact(6)) {
+    let windows = episodes
+        .iter()
+        .filter_map(|episode| channels_of(episode, modality));
+    for sample in windows.flat_map(|(window, _)| window.chunks_exact(6)) {
         count += 1;
         for ((sum, square), &x) in sum.iter_mut().zip(&mut squares).zip(sample) {
             *sum += f64::from(x);
@@ -76,21 +84,6 @@ fn moments<'a>(windows: impl Iterator<Item = &'a Vec<f32>>) -> [(f64, f64); 6] {
         let mean = sum[i] / n;
         (mean, (squares[i] / n - mean * mean).max(0.0).sqrt())
     })
-}
-
-fn scale<'a>(
-    channels: &mut Channels,
-    known: &[&str],
-    floors: &[f32; 6],
-    windows: impl Iterator<Item = &'a Vec<f32>>,
-) {
-    let moments = moments(windows);
-    let at: Vec<usize> = channels.columns(known).map(|(at, _, _)| at).collect();
-    channels.mean = at.iter().map(|&at| moments[at].0 as f32).collect();
-    channels.scale = at
-        .iter()
-        .map(|&at| (moments[at].1 as f32).max(floors[at]))
-        .collect();
 }
 
 /// Σ over pixels of the variance over all frames, grey in [0, 1].
@@ -116,22 +109,9 @@ fn frame_variance(episodes: &[Episode]) -> f64 {
 fn window_variance(config: &Config, expert: Expert, episodes: &[Episode]) -> f64 {
     let mut total = 0.0;
     for (channels, modality) in config.channels(expert) {
-        let haptic = modality == Modality::Haptic;
-        let known = if haptic {
-            HAPTIC_CHANNELS
-        } else {
-            PROPRIO_CHANNELS
-        };
-        let windows = episodes.iter().filter_map(|e| {
-            if haptic {
-                e.haptic.as_ref()
-            } else {
-                e.proprio.as_ref()
-            }
-        });
-        let moments = moments(windows);
+        let moments = moments(episodes, modality);
         let each = channels
-            .columns(&known)
+            .columns(known(modality))
             .map(|(at, _, scale)| (moments[at].1 / f64::from(scale)).powi(2));
         total += each.sum::<f64>() * config.window as f64;
     }

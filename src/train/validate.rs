@@ -13,7 +13,7 @@ use crate::model::inspect::Inspector;
 /// Scores on `val`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
-    /// Means over all beliefs, on the mean path with every expert (or the masks of update 0).
+    /// Means over all beliefs, on the mean path with every expert.
     pub losses: Losses,
     /// Open-loop PSNR in dB at each horizon, averaged over episodes.
     pub psnr_db: Vec<f64>,
@@ -31,8 +31,13 @@ pub fn validate(model: &Model, val: &[Episode]) -> Result<Validation, TrainError
             psnr_db: Vec::new(),
         });
     }
-    let batch = Batch::new(&model.config, &val, 0, 0)?;
-    let (_, losses) = step::loss(model, &batch, false)?;
+    // In batches, so that memory does not grow with the length of episodes.
+    let mut losses = Losses::default();
+    for (i, part) in val.chunks(model.config.training.batch).enumerate() {
+        let (_, of_part) = step::loss(model, &Batch::new(&model.config, part, None)?, false)?;
+        let seen = i * model.config.training.batch;
+        losses = losses.towards(of_part, part.len() as f32 / (seen + part.len()) as f32);
+    }
     let inspector = Inspector::new(model)?;
     let protocol = Protocol::for_episode(val[0].steps());
     let mut sums = vec![0.0; protocol.horizon];

@@ -15,7 +15,7 @@ use poescope::model::Model;
 use poescope::model::config::Config;
 use poescope::sim::{Params, simulate};
 use poescope::train::schedule::Budget;
-use poescope::train::state::{STATE, State};
+use poescope::train::state::{Origin, STATE, State};
 use poescope::train::{Outcome, Run, run, statistics};
 
 use crate::common::{answer, poescope, simulated, tensors};
@@ -74,26 +74,29 @@ fn a_stopped_run_ends_where_an_uninterrupted_one_does() {
             train,
             val,
             folder,
-            seed: 9,
-            budget: Budget {
-                epochs: Some(3),
-                minutes: None,
-            },
             stop: &stop,
         };
         let halt = |update| stop.store(until == Some(update), Ordering::Relaxed);
         run(model, state, sitting, |progress| halt(progress.update)).unwrap()
     };
+    let origin = Origin {
+        seed: 9,
+        budget: Budget {
+            epochs: Some(3),
+            minutes: None,
+        },
+        ..Origin::default()
+    };
     let new = |seed| Model::new(config.clone(), seed, &Device::Cpu).unwrap();
 
     let whole_folder = tempfile::tempdir().unwrap();
-    let (whole, mut whole_state) = (new(1), State::default());
+    let (whole, mut whole_state) = (new(1), State::new(origin.clone()));
     let before = bits(&whole, &whole_state);
     let outcome = sit(&whole, &mut whole_state, whole_folder.path(), None);
     assert_eq!((outcome, whole_state.update), (Outcome::Finished, 6));
 
     let folder = tempfile::tempdir().unwrap();
-    let (first, mut state) = (new(1), State::default());
+    let (first, mut state) = (new(1), State::new(origin.clone()));
     let outcome = sit(&first, &mut state, folder.path(), Some(3));
     assert_eq!((outcome, state.update), (Outcome::Stopped, 3));
     // Another process begins with other numbers, and has nothing but the file.
