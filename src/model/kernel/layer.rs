@@ -160,11 +160,7 @@ impl Layer {
                         scratch,
                         Write::Replace,
                     );
-                    y.fill(0.0);
-                    let images = y.chunks_exact_mut(windows.image_len());
-                    for (image, rows) in images.zip(scratch.chunks_exact(windows.count() * n)) {
-                        windows.scatter_add(rows, image);
-                    }
+                    scatter(windows, scratch, y);
                 }
             }
         }
@@ -233,11 +229,7 @@ impl Layer {
                         scratch,
                         Write::Replace,
                     );
-                    dx.fill(0.0);
-                    let images = dx.chunks_exact_mut(windows.image_len());
-                    for (image, rows) in images.zip(scratch.chunks_exact(windows.count() * k)) {
-                        windows.scatter_add(rows, image);
-                    }
+                    scatter(windows, scratch, dx);
                 }
             }
             Kind::Transposed { windows, .. } => {
@@ -276,4 +268,16 @@ fn gathered<'a>(windows: Windows, images: &'a [f32], scratch: &'a mut [f32]) -> 
         windows.gather(image, rows);
     }
     scratch
+}
+
+/// Every image as the sum of its windows, which lie in `scratch` as rows.
+fn scatter(windows: Windows, scratch: &[f32], images: &mut [f32]) {
+    images.fill(0.0);
+    let rows = windows.count() * windows.len();
+    for (image, rows) in images
+        .chunks_exact_mut(windows.image_len())
+        .zip(scratch.chunks_exact(rows))
+    {
+        windows.scatter_add(rows, image);
+    }
 }
