@@ -87,7 +87,7 @@ pub(super) fn align_on(
         controls,
         object,
         tip,
-        flags: flags(recording, topics, *last),
+        flags: flags(recording, topics, (first, *last)),
         steps_nanos,
     })
 }
@@ -124,7 +124,7 @@ fn since(origin: i64, stamp: i64) -> f64 {
 }
 
 /// What was odd: what the recording says already, then each stream's gaps and backward stamps.
-fn flags(recording: &Recording, topics: &Topics, last_step: i64) -> Vec<Flag> {
+fn flags(recording: &Recording, topics: &Topics, steps: (i64, i64)) -> Vec<Flag> {
     fn stamps<const N: usize>(track: &Track<N>) -> &[i64] {
         &track.stamps_nanos
     }
@@ -139,8 +139,8 @@ fn flags(recording: &Recording, topics: &Topics, last_step: i64) -> Vec<Flag> {
     let mut flags = recording.flags.clone();
     for (role, stamps) in streams {
         // No command follows the last image, so only what is sensed must last until then.
-        let until = (role != Role::Control).then_some(last_step);
-        irregular::find(topics.topic(role), stamps, until, &mut flags);
+        let cover = (role != Role::Control).then_some(steps);
+        irregular::find(topics.topic(role), stamps, cover, &mut flags);
     }
     flags
 }

@@ -2,23 +2,34 @@
 
 use super::snapshot::{Badge, ModelInfo};
 use super::switches::Switches;
-use crate::modality::Expert;
+use crate::modality::{Expert, ExpertSet};
 
-/// Whether the model was trained on the switches at a step.
-pub fn badge(model: &ModelInfo, switches: &Switches, step: usize) -> Badge {
+/// Whether the model was trained on the switches of the steps `first..=step`: the belief at `step` has come through all
+/// of them. Says at which step they were not, where that is an earlier one.
+pub fn badge(model: &ModelInfo, switches: &Switches, first: usize, step: usize) -> Badge {
     if !model.has_product() {
         return Badge::NoProduct;
     }
-    if let Some((expert, alpha)) = model
+    if let Some(why) = untrained(model, switches, step) {
+        return Badge::Untrained(why);
+    }
+    let earlier = (first..step).find_map(|at| Some((at, untrained(model, switches, at)?)));
+    earlier.map_or(Badge::Trained, |(at, why)| {
+        Badge::Untrained(format!("{why}, at step {}", at + 1))
+    })
+}
+
+/// Why the switches at one step were not trained, if they were not.
+fn untrained(model: &ModelInfo, switches: &Switches, step: usize) -> Option<String> {
+    let mut factors = model
         .factors()
         .into_iter()
-        .map(|expert| (expert, switches.alpha(expert, step)))
-        .find(|(_, alpha)| ![0.0, 1.0].contains(alpha))
-    {
-        return Badge::Untrained(format!("{} α {alpha}", expert.name()));
+        .map(|expert| (expert, switches.alpha(expert, step)));
+    if let Some((expert, alpha)) = factors.find(|(_, alpha)| ![0.0, 1.0].contains(alpha)) {
+        return Some(format!("{} α {alpha}", expert.name()));
     }
     if model.prior_expert && switches.alpha(Expert::Prior, step) == 0.0 {
-        return Badge::Untrained("prior off".to_owned());
+        return Some("prior off".to_owned());
     }
     let is_active = |i: usize| {
         model
@@ -26,17 +37,12 @@ pub fn badge(model: &ModelInfo, switches: &Switches, step: usize) -> Badge {
             .get(i)
             .is_some_and(|&e| switches.alpha(e, step) > 0.0)
     };
-    let matches = |member: &dyn Fn(usize) -> bool| {
-        (0..model.experts.len()).all(|i| member(i) == is_active(i))
-    };
-    if model
-        .trained_sets
-        .iter()
-        .any(|set| matches(&|i| set.contains(i)))
-    {
-        return Badge::Trained;
+    let matches =
+        |set: &ExpertSet| (0..model.experts.len()).all(|i| set.contains(i) == is_active(i));
+    if model.trained_sets.iter().any(matches) {
+        return None;
     }
-    Badge::Untrained(format!(
+    Some(format!(
         "{} never trained; trained: {}",
         set_name(model, &is_active),
         trained_names(model)
@@ -78,7 +84,7 @@ fn set_name(model: &ModelInfo, is_member: &dyn Fn(usize) -> bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::modality::ExpertSet;
+    use crate::session::command::Scope;
     use crate::session::switches::Reach;
 
     fn vhp(prior_expert: bool) -> ModelInfo {
@@ -96,26 +102,39 @@ mod tests {
     #[test]
     fn the_badge_says_what_was_trained() {
         let (model, mut switches) = (vhp(true), Switches::default());
-        assert_eq!(badge(&model, &switches, 3), Badge::Trained);
+        assert_eq!(badge(&model, &switches, 1, 3), Badge::Trained);
         switches.set(Expert::Vision, Reach::EPISODE, 0.0);
         let untrained = |why: &str| Badge::Untrained(why.to_owned());
         assert_eq!(
-            badge(&model, &switches, 3),
+            badge(&model, &switches, 1, 3),
             untrained("J never trained; trained: V+J")
         );
         switches.set(Expert::Vision, Reach::EPISODE, 1.0);
         switches.set(Expert::Joint, Reach::EPISODE, 0.5);
-        assert_eq!(badge(&model, &switches, 3), untrained("joint α 0.5"));
+        assert_eq!(badge(&model, &switches, 1, 3), untrained("joint α 0.5"));
         switches.set(Expert::Joint, Reach::EPISODE, 1.0);
         switches.set(Expert::Prior, Reach::EPISODE, 0.0);
-        assert_eq!(badge(&model, &switches, 3), untrained("prior off"));
+        assert_eq!(badge(&model, &switches, 1, 3), untrained("prior off"));
+    }
+
+    #[test]
+    fn a_belief_depends_on_the_switches_of_earlier_steps() {
+        let (model, mut switches) = (vhp(true), Switches::default());
+        switches.set(Expert::Vision, Reach::of(Scope::Frame, 4), 0.5);
+        assert_eq!(badge(&model, &switches, 1, 3), Badge::Trained);
+        let why = |why: &str| Badge::Untrained(why.to_owned());
+        assert_eq!(badge(&model, &switches, 1, 4), why("vision α 0.5"));
+        assert_eq!(
+            badge(&model, &switches, 1, 9),
+            why("vision α 0.5, at step 5")
+        );
     }
 
     #[test]
     fn two_sensors_are_a_product_without_a_prior_and_one_is_none() {
         let mut model = vhp(false);
-        assert_eq!(badge(&model, &Switches::default(), 1), Badge::Trained);
+        assert_eq!(badge(&model, &Switches::default(), 1, 1), Badge::Trained);
         model.experts.pop();
-        assert_eq!(badge(&model, &Switches::default(), 1), Badge::NoProduct);
+        assert_eq!(badge(&model, &Switches::default(), 1, 1), Badge::NoProduct);
     }
 }

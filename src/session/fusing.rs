@@ -78,7 +78,8 @@ impl Place {
     }
 }
 
-/// Switches an expert off where it is on under the cursor, else on as trained.
+/// Switches an expert off where it is on under the cursor, else on: as it was before, if it was switched off over the
+/// same steps, else as trained.
 pub fn toggle(
     model: &ModelInfo,
     switches: &mut Switches,
@@ -86,13 +87,15 @@ pub fn toggle(
     position: usize,
 ) -> Result<String, Refusal> {
     let expert = factor_at(model, position)?;
-    let alpha = if switches.alpha(expert, place.step) > 0.0 {
-        0.0
+    let mut changed = switches.clone();
+    let state = if switches.alpha(expert, place.step) > 0.0 {
+        changed.off(expert, place.reach());
+        "off"
     } else {
-        1.0
+        changed.on(expert, place.reach());
+        "on"
     };
-    change(model, switches, place, &[(expert, alpha)])?;
-    let state = if alpha > 0.0 { "on" } else { "off" };
+    accept(model, switches, changed, expert.name())?;
     Ok(format!("{} {state} {}", expert.name(), place.words()))
 }
 
@@ -181,9 +184,23 @@ fn change(
     for &(expert, alpha) in alphas {
         changed.set(expert, place.reach(), alpha);
     }
+    let last = alphas.iter().find(|(_, alpha)| *alpha == 0.0);
+    accept(
+        model,
+        switches,
+        changed,
+        last.map_or("this", |(expert, _)| expert.name()),
+    )
+}
+
+/// Takes the changed switches over, unless they leave a step without any active expert.
+fn accept(
+    model: &ModelInfo,
+    switches: &mut Switches,
+    changed: Switches,
+    name: &str,
+) -> Result<(), Refusal> {
     if let Some(step) = changed.first_silent_step(&model.factors()) {
-        let last = alphas.iter().find(|(_, alpha)| *alpha == 0.0);
-        let name = last.map_or("this", |(expert, _)| expert.name());
         return Err(format!(
             "{name} stays on: it is the last active expert at step {}, and a belief needs one",
             step + 1
@@ -213,6 +230,31 @@ mod tests {
 
     fn vhp() -> ModelInfo {
         model(&[Expert::Vision, Expert::Joint], true, &[3])
+    }
+
+    #[test]
+    fn off_and_on_again_gives_back_what_an_expert_had() {
+        let (model, mut switches) = (vhp(), Switches::default());
+        temper(&model, &mut switches, EVERYWHERE, 0, 0.5).unwrap();
+        let frame = Place {
+            scope: Scope::Frame,
+            step: 4,
+        };
+        toggle(&model, &mut switches, frame, 1).unwrap();
+        let before = switches.clone();
+        for position in [0, 1] {
+            toggle(&model, &mut switches, EVERYWHERE, position).unwrap();
+            assert!(switches != before);
+            toggle(&model, &mut switches, EVERYWHERE, position).unwrap();
+        }
+        for step in 0..8 {
+            for expert in model.factors() {
+                assert!(
+                    (switches.alpha(expert, step) - before.alpha(expert, step)).abs()
+                        < f32::EPSILON
+                );
+            }
+        }
     }
 
     const EVERYWHERE: Place = Place {

@@ -50,7 +50,7 @@ impl Session {
             start: rollout.start,
             experts: self.expert_views(inferred),
             badge: self.model().map_or(Badge::NoProduct, |m| {
-                badge(m, &self.settings.switches, badge_step)
+                badge(m, &self.settings.switches, first_belief, badge_step)
             }),
             frames: answer
                 .map(|answer| frame_row(answer, cursor))

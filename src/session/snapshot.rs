@@ -93,8 +93,10 @@ pub struct EpisodeView {
     pub secs: Vec<f64>,
     /// Root-mean-square force of each step's window in newtons; empty if not recorded.
     pub force_newtons: Vec<f32>,
-    /// What was odd about the recording.
+    /// What was odd about the recording, with topic and time.
     pub flags: Vec<String>,
+    /// The step at or before which each of it was seen.
+    pub flagged_steps: Vec<usize>,
     /// Roles the model needs and the recording lacks; empty when the model can run.
     pub missing: Vec<String>,
 }

@@ -68,8 +68,14 @@ pub struct Run {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Switches {
     /// For each expert the steps at which a new α begins, the first at step 0, neighbours unequal.
-    starts: BTreeMap<Expert, Vec<(usize, f32)>>,
+    starts: BTreeMap<Expert, Starts>,
+    /// What an expert had when it was switched off, and how far that reached: switched on again over the same steps, it
+    /// is as it was.
+    kept: BTreeMap<Expert, (Reach, Option<Starts>)>,
 }
+
+/// The steps at which a new α begins.
+type Starts = Vec<(usize, f32)>;
 
 impl Switches {
     /// α of an expert at a step.
@@ -84,6 +90,7 @@ impl Switches {
         if reach.until.is_some_and(|until| until <= reach.from) {
             return;
         }
+        self.kept.remove(&expert);
         let starts = self
             .starts
             .entry(expert)
@@ -98,6 +105,23 @@ impl Switches {
         starts.dedup_by(|later, earlier| later.1.total_cmp(&earlier.1).is_eq());
         if *starts == [(0, TRAINED)] {
             self.starts.remove(&expert);
+        }
+    }
+
+    /// Switches an expert off over some steps.
+    pub fn off(&mut self, expert: Expert, reach: Reach) {
+        let before = self.starts.get(&expert).cloned();
+        self.set(expert, reach, 0.0);
+        self.kept.insert(expert, (reach, before));
+    }
+
+    /// Switches an expert on over some steps: as it was before it was switched off there, else as trained.
+    pub fn on(&mut self, expert: Expert, reach: Reach) {
+        match self.kept.remove(&expert) {
+            Some((same, Some(before))) if same == reach => {
+                self.starts.insert(expert, before);
+            }
+            _ => self.set(expert, reach, TRAINED),
         }
     }
 

@@ -174,6 +174,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
                 .map(|t| if t < 4 { 0.05 } else { 1.0 + 2.0 * noise(t) })
                 .collect(),
             flags: Vec::new(),
+            flagged_steps: Vec::new(),
             missing: Vec::new(),
         })),
         episode_index: 2,

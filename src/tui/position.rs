@@ -70,7 +70,12 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         at = text(buf, inner, at + gap, row, "─ belief", dim());
         at = text(buf, inner, at + gap, row, prediction, dim().patch(ink));
         text(buf, inner, at + gap, row, "+ tip", dim());
-        let masses = format!("1σ solid {:.0} %, 95 % dotted", ONE_SIGMA_MASS * 100.0);
+        let mass = ONE_SIGMA_MASS * 100.0;
+        let masses = if inner.width < 46 {
+            format!("1σ solid {mass:.0} %, 95 % dashed")
+        } else {
+            format!("1σ solid {mass:.0} %, 95 % dashed; prediction: one step's σ")
+        };
         text(buf, inner, 0, row + 1, &masses, dim());
     }
 }
@@ -192,14 +197,17 @@ impl Plane {
         canvas.path(&path(&position.belief), Stroke::Solid, Style::new());
         let at = |estimates: &[Option<Estimate>]| estimates.get(cursor).copied().flatten();
         let (belief, prediction) = (at(&position.belief), at(&position.prediction));
-        for (estimate, style) in [(prediction, ink), (belief, Style::new())] {
-            let Some(estimate) = estimate else { continue };
+        // A prediction states the spread of its last step only, which no mass can be claimed for.
+        if let Some(estimate) = prediction {
+            canvas.path(&self.ellipse(&estimate, 1.0), Stroke::Solid, ink);
+        }
+        if let Some(estimate) = belief {
             canvas.path(
                 &self.ellipse(&estimate, SIGMAS_OF_95_PERCENT),
-                Stroke::Dotted,
-                style,
+                Stroke::Dashed,
+                Style::new(),
             );
-            canvas.path(&self.ellipse(&estimate, 1.0), Stroke::Solid, style);
+            canvas.path(&self.ellipse(&estimate, 1.0), Stroke::Solid, Style::new());
         }
         canvas.draw(buf, pane);
 

@@ -100,7 +100,13 @@ pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         let at = text(buf, pane, 0, 0, "! untrained switches: ", warning);
         text(buf, pane, at, 0, why, Style::new());
     } else if let Some(flag) = episode.and_then(|episode| episode.flags.first()) {
-        let at = text(buf, pane, 0, 0, "recording: ", dim());
+        let count = episode.map_or(0, |episode| episode.flags.len());
+        let which = if count > 1 {
+            format!("recording (1 of {count}): ")
+        } else {
+            "recording: ".to_owned()
+        };
+        let at = text(buf, pane, 0, 0, &which, dim());
         text(buf, pane, at, 0, flag, Style::new());
     } else {
         hints(buf, pane);

@@ -72,6 +72,8 @@ enum Wake {
 
 /// Runs the face until the user quits or a signal comes. The terminal is given back in every case.
 pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
+    // Before the terminal is taken over: a signal must never find it taken and nobody listening.
+    let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT])?;
     let guard = Guard::enter()?;
     // The answer comes on the terminal's input, so it is asked for before anything else reads there.
     let picker = match images {
@@ -85,7 +87,6 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
         app.face.pixels = Some(Pixels::start(picker, waker(sender.clone()))?);
     }
     app.session.set_waker(Box::new(waker(sender.clone())));
-    let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT])?;
     let handle = signals.handle();
     let to_loop = sender.clone();
     thread::Builder::new()

@@ -260,3 +260,29 @@ fn random_keys_never_panic() {
         screen(&app.session.snapshot(), &app.face, size);
     }
 }
+
+#[test]
+fn what_was_odd_is_said_and_marked_on_the_timeline() {
+    let mut snapshot = fixture::snapshot(6, 16);
+    let mut episode = (**snapshot.episode.as_ref().unwrap()).clone();
+    episode.flags = vec![
+        "/wrench at 1.20 s: gap of 0.9 s".to_owned(),
+        "/wrench at 2.00 s: other".to_owned(),
+    ];
+    episode.flagged_steps = vec![4, 7];
+    snapshot.episode = Some(Arc::new(episode));
+    snapshot.badge = Badge::Trained;
+    snapshot.message = None;
+    let text = to_text(&screen(&snapshot, &Face::default(), SMALL), false);
+    assert!(
+        text.contains("recording (1 of 2): /wrench at 1.20 s: gap of 0.9 s"),
+        "{text}"
+    );
+    assert_eq!(
+        text.lines()
+            .filter(|line| line.matches('!').count() == 2)
+            .count(),
+        1,
+        "{text}"
+    );
+}

@@ -178,6 +178,15 @@ fn track(buf: &mut Buffer, pane: Rect, row: u16, axis: Axis, snapshot: &Snapshot
             put(buf, pane, axis.column(step) + i, row, fill, style);
         }
     }
+    for &step in snapshot
+        .episode
+        .iter()
+        .flat_map(|episode| &episode.flagged_steps)
+    {
+        if step < axis.steps {
+            put(buf, pane, axis.column(step), row, '!', strong());
+        }
+    }
     // The bar closes the last step that was seen.
     let boundary = axis.column(start) + axis.columns - 1;
     if start < axis.steps {

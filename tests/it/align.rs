@@ -247,3 +247,28 @@ fn a_sensor_that_stops_early_has_a_gap() {
     assert_eq!(flags.len(), 1, "{flags:?}");
     assert_eq!(flags[0].stamp_nanos, BASE + 300_000_000);
 }
+
+#[test]
+fn a_sensor_that_starts_late_or_speaks_once_is_flagged() {
+    let images = stamps(BASE, &[100_000_000; 5]);
+    let late = stamps(BASE + 250_000_000, &[10_000_000; 25]);
+    let recording = Recording {
+        frames: images.iter().map(|_| frame()).collect(),
+        frame_stamps_nanos: images,
+        wrench: track(&late, |_| [0.0; 6]),
+        ee_position: track(&[BASE], |_| [0.0; 3]),
+        ..Recording::default()
+    };
+    let flags = align(&recording, LAYOUT).unwrap().flags;
+    let said: Vec<_> = flags
+        .iter()
+        .map(|flag| (flag.stamp_nanos, flag.what.as_str()))
+        .collect();
+    assert_eq!(
+        said,
+        [
+            (BASE + 100_000_000, "gap of 160.000 ms"),
+            (BASE, "a single sample")
+        ]
+    );
+}

@@ -8,8 +8,9 @@ const GAP_PERIODS: i64 = 3;
 const ROUNDING_NANOS: i64 = 1000;
 
 /// Appends what is odd about `stamps` (in the order of recording) to `flags`. The nominal period is the median one; a
-/// stream that ends so long before `until` has a gap there, too.
-pub(super) fn find(topic: &str, stamps: &[i64], until: Option<i64>, flags: &mut Vec<Flag>) {
+/// stream that begins so long after, or ends so long before the steps it should cover has a gap there, too, and a single
+/// sample covers nothing.
+pub(super) fn find(topic: &str, stamps: &[i64], cover: Option<(i64, i64)>, flags: &mut Vec<Flag>) {
     let mut flag = |stamp_nanos: i64, what: String| {
         flags.push(Flag {
             topic: topic.to_owned(),
@@ -32,10 +33,19 @@ pub(super) fn find(topic: &str, stamps: &[i64], until: Option<i64>, flags: &mut 
     let mut lengths: Vec<_> = sorted.windows(2).map(periods).collect();
     lengths.sort_unstable();
     let Some(&nominal) = lengths.get(lengths.len().saturating_sub(1) / 2) else {
+        if let (Some(_), [only]) = (cover, stamps) {
+            flag(*only, "a single sample".to_owned());
+        }
         return;
     };
-    if let Some(until) = until.filter(|&until| sorted.last().is_some_and(|&last| until > last)) {
-        sorted.push(until);
+    if let (Some((from, until)), Some(&first), Some(&last)) = (cover, sorted.first(), sorted.last())
+    {
+        if from < first {
+            sorted.insert(0, from);
+        }
+        if until > last {
+            sorted.push(until);
+        }
     }
     let limit = nominal
         .saturating_mul(GAP_PERIODS)

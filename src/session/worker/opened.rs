@@ -22,6 +22,7 @@ impl Opened {
     /// Shares the pieces of an episode; `missing` are the roles the model lacks.
     pub fn new(episode: &Episode, missing: Vec<String>) -> Self {
         let steps = episode.steps();
+        let first = episode.steps_nanos.first().copied().unwrap_or_default();
         let force_newtons = (0..steps).map_while(|t| episode.force_newtons(t)).collect();
         let view = EpisodeView {
             id: episode.meta.id.clone(),
@@ -32,7 +33,20 @@ impl Opened {
             flags: episode
                 .flags
                 .iter()
-                .map(|flag| format!("{}: {}", flag.topic, flag.what))
+                .map(|flag| {
+                    let secs = flag.stamp_nanos.saturating_sub(first) as f64 * 1e-9;
+                    format!("{} at {secs:.2} s: {}", flag.topic, flag.what)
+                })
+                .collect(),
+            flagged_steps: episode
+                .flags
+                .iter()
+                .map(|flag| {
+                    episode
+                        .steps_nanos
+                        .partition_point(|&step| step <= flag.stamp_nanos)
+                        .saturating_sub(1)
+                })
                 .collect(),
             missing,
         };
