@@ -14,4 +14,5 @@ mod pipeline;
 mod portable;
 mod readme;
 mod resume;
+mod sample;
 mod topics;

@@ -1,0 +1,71 @@
+//! What ships: it opens without a word, and it is recognisably right.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::common::{answer, poescope};
+
+/// One frame of the sample data after some keys, without colour.
+fn printed(keys: &str) -> String {
+    let mut command = poescope();
+    command
+        .env("NO_COLOR", "1")
+        .args(["--print", "--size", "120x40", "--keys", keys]);
+    answer(&mut command)
+}
+
+/// The line that begins with `label`, of a printed frame.
+fn line<'a>(frame: &'a str, label: &str) -> &'a str {
+    frame
+        .lines()
+        .find(|line| line.trim_start().starts_with(label))
+        .unwrap()
+}
+
+#[test]
+fn an_expert_switched_off_changes_shares_position_and_prediction() {
+    let (with, without) = (printed("llllllllpll"), printed("llllllllpll1"));
+    for label in ["2 H haptic", "9 D prior"] {
+        assert_ne!(line(&with, label), line(&without, label));
+    }
+    let off = |frame: &str| {
+        frame
+            .lines()
+            .find_map(|line| line.split_once("position cm").map(|p| p.1.to_owned()))
+    };
+    assert_ne!(off(&with).unwrap(), off(&without).unwrap());
+    let prediction = |frame: &str| line(frame, "pred ").to_owned();
+    assert_ne!(prediction(&with), prediction(&without));
+    let again = printed("llllllllpll11");
+    for label in ["1 V vision", "2 H haptic", "9 D prior", "pred "] {
+        assert_eq!(line(&with, label), line(&again, label));
+    }
+}
+
+#[test]
+fn the_model_is_ahead_of_both_trivial_predictors_at_every_horizon_from_two_on() {
+    let report: Value = serde_json::from_str(&answer(poescope().args(["eval", "--json"]))).unwrap();
+    let rows = report["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 11);
+    for row in &rows[1..] {
+        for over in ["over_held", "over_mean_frame"] {
+            assert!(row[over]["low"].as_f64().unwrap() > 0.0, "{row}");
+        }
+    }
+}
+
+#[test]
+fn what_ships_is_small() {
+    fn bytes(path: &Path) -> u64 {
+        if path.is_dir() {
+            std::fs::read_dir(path)
+                .unwrap()
+                .map(|entry| bytes(&entry.unwrap().path()))
+                .sum()
+        } else {
+            path.metadata().unwrap().len()
+        }
+    }
+    assert!(bytes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_data")) < 20_000_000);
+}
