@@ -35,7 +35,7 @@ impl Default for Scene {
             tip_radius_m: 0.008,
             tip_friction: 0.2,
             sensor_lever_m: 0.15,
-            workspace_m: [[0.36, -0.17], [0.73, 0.17]],
+            workspace_m: [[0.36, -0.15], [0.72, 0.15]],
         }
     }
 }
