@@ -7,7 +7,7 @@
 //!   0  +         ┈┈┈◆
 //!     -3              12
 //! ╌ truth ─ belief ┈ pred + tip
-//! 1σ solid 39 %, 95 % dotted
+//! 1σ solid 39 %, 95 % dashed
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -71,7 +71,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         at = text(buf, inner, at + gap, row, prediction, dim().patch(ink));
         text(buf, inner, at + gap, row, "+ tip", dim());
         let mass = ONE_SIGMA_MASS * 100.0;
-        let masses = if inner.width < 46 {
+        let masses = if inner.width < 52 {
             format!("1σ solid {mass:.0} %, 95 % dashed")
         } else {
             format!("1σ solid {mass:.0} %, 95 % dashed; prediction: one step's σ")
