@@ -9,6 +9,7 @@ pub mod schedule;
 pub mod state;
 pub mod statistics;
 pub mod step;
+pub mod tensorboard;
 pub mod validate;
 
 use std::path::Path;

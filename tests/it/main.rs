@@ -15,4 +15,5 @@ mod portable;
 mod readme;
 mod resume;
 mod sample;
+mod tensorboard;
 mod topics;
