@@ -17,7 +17,8 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use self::batch::Batch;
+use self::batch::{Batch, Draws};
+use self::schedule::Phase;
 use self::state::State;
 use self::step::Losses;
 use self::validate::Validation;
@@ -135,9 +136,21 @@ pub fn run(
             state.update,
         );
         let episodes: Vec<&Episode> = chosen.into_iter().map(|i| &run.train[i]).collect();
-        let batch = Batch::new(&model.config, &episodes, Some((seed, state.update)))?;
-        let rate = schedule::learning_rate(training, state.update, fraction);
-        let losses = step::update(model, &batch, &mut state.moments, rate)?;
+        let phase = Phase::of(training, state.update, epoch_updates, fraction);
+        let draws = Draws {
+            seed,
+            update: state.update,
+            segment: phase.segment,
+        };
+        let batch = Batch::new(&model.config, &episodes, Some(draws))?;
+        if state.update > 0 {
+            let before = Phase::of(training, state.update - 1, epoch_updates, fraction);
+            if before.stage != phase.stage {
+                // Each stage has an optimiser of its own.
+                state.moments.clear();
+            }
+        }
+        let losses = step::update(model, &batch, &mut state.moments, &phase)?;
         if !losses.is_finite() {
             let episodes = episodes
                 .iter()
@@ -167,7 +180,7 @@ pub fn run(
             validation,
         };
         if progress.validation.is_some() {
-            state::append_metrics(run.folder, &progress, rate)?;
+            state::append_metrics(run.folder, &progress, phase.rate)?;
         }
         if last_save.elapsed() > CHECKPOINT_EVERY {
             state.save(model, run.folder)?;
