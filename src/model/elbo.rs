@@ -11,6 +11,11 @@ pub fn kl(filtered: &Filtered) -> Result<Tensor> {
     filtered.posterior.kl(&filtered.prior)
 }
 
+/// What each latent adds to it: `(B, T, Z)`.
+pub fn kl_per_latent(filtered: &Filtered) -> Result<Tensor> {
+    filtered.posterior.kl_per_latent(&filtered.prior)
+}
+
 /// KL of each posterior against the prior stated `n` steps before it, for n = 2 … `n_step` (overshooting): one tensor
 /// `(B, T - n)` for each n. The priors of the step before are pushed through the dynamics once more, their means fed
 /// on, from the states that stated them.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use candle_core::Tensor;
+use candle_core::backprop::GradStore;
 use serde::{Deserialize, Serialize};
 
 use super::TrainError;
@@ -50,8 +51,19 @@ impl Losses {
     }
 }
 
-/// The loss of a batch, with gradients where `train`, and its terms.
-pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<(Tensor, Losses), TrainError> {
+/// The loss of a batch, and what it is made of.
+#[derive(Debug)]
+pub struct Terms {
+    /// The loss, a scalar to differentiate.
+    pub total: Tensor,
+    /// It and its terms as numbers.
+    pub losses: Losses,
+    /// What each latent adds to `losses.kl`, in nats: a latent near 0 carries nothing.
+    pub kl_per_latent: Vec<f32>,
+}
+
+/// The loss of a batch, with gradients where `train`.
+pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<Terms, TrainError> {
     let config = &model.config;
     let weights = model.weights()?;
     let (b, t) = (batch.episodes, batch.beliefs);
@@ -82,6 +94,7 @@ pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<(Tensor, Losses
         config.prior_expert,
     )?;
     let plain_kl = elbo::kl(&filtered)?.mean_all()?;
+    let kl_per_latent = elbo::kl_per_latent(&filtered)?.mean((0, 1))?.to_vec1()?;
     let mut kl = plain_kl.clone();
     let steps = config.training.n_step;
     for term in elbo::overshooting(
@@ -120,32 +133,81 @@ pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<(Tensor, Losses
             mean + batch.seen[i].dim(1)? as f32 * 0.5 * std::f32::consts::PI.ln();
     }
     losses.loss = total.to_scalar()?;
-    Ok((total, losses))
+    Ok(Terms {
+        total,
+        losses,
+        kl_per_latent,
+    })
 }
 
-/// One update of every network.
-pub fn update(
-    model: &Model,
-    batch: &Batch,
-    moments: &mut BTreeMap<String, Moments>,
-    rate: f64,
-) -> Result<Losses, TrainError> {
-    let (total, losses) = loss(model, batch, true)?;
-    if !losses.is_finite() {
-        return Ok(losses);
+/// What a batch says of the weights, before anything is changed by it.
+#[derive(Debug)]
+pub struct Gradients {
+    /// Of these weights on this batch.
+    pub losses: Losses,
+    /// What each latent adds to `losses.kl`, in nats.
+    pub kl_per_latent: Vec<f32>,
+    /// Norm of each network's gradient before clipping, in the model's order; none where the loss is no number.
+    pub norms: Vec<(String, f32)>,
+    of_theta: Option<GradStore>,
+}
+
+/// Differentiates the loss of a batch.
+pub fn gradients(model: &Model, batch: &Batch) -> Result<Gradients, TrainError> {
+    let terms = loss(model, batch, true)?;
+    let mut gradients = Gradients {
+        losses: terms.losses,
+        kl_per_latent: terms.kl_per_latent,
+        norms: Vec::new(),
+        of_theta: None,
+    };
+    if gradients.losses.is_finite() {
+        let of_theta = terms.total.backward()?;
+        for network in model.networks() {
+            if let Some(gradient) = of_theta.get(network.theta()) {
+                let norm = adam::norm(gradient)?;
+                gradients.norms.push((network.name.clone(), norm));
+            }
+        }
+        gradients.of_theta = Some(of_theta);
     }
-    let gradients = total.backward()?;
-    for network in model.networks() {
-        if let Some(gradient) = gradients.get(network.theta()) {
-            let moments = moments.entry(network.name.clone()).or_default();
+    Ok(gradients)
+}
+
+impl Gradients {
+    /// What is not a number: the loss, or the gradient of a network. An update by it would spoil the weights and
+    /// Adam's moments for good.
+    pub fn not_finite(&self) -> Option<String> {
+        if !self.losses.is_finite() {
+            return Some(format!("the loss ({:?})", self.losses));
+        }
+        let (network, norm) = self.norms.iter().find(|(_, norm)| !norm.is_finite())?;
+        Some(format!("the gradient of `{network}` (norm {norm})"))
+    }
+
+    /// One update of every network: clip, Adam.
+    pub fn apply(
+        &self,
+        model: &Model,
+        moments: &mut BTreeMap<String, Moments>,
+        rate: f64,
+    ) -> Result<(), TrainError> {
+        let Some(of_theta) = &self.of_theta else {
+            return Ok(());
+        };
+        let trained = model
+            .networks()
+            .filter_map(|network| Some((network, of_theta.get(network.theta())?)));
+        for ((network, gradient), (_, norm)) in trained.zip(&self.norms) {
             adam::update(
                 network.theta(),
                 gradient,
-                moments,
+                *norm,
+                moments.entry(network.name.clone()).or_default(),
                 rate,
                 model.config.training.clip,
             )?;
         }
+        Ok(())
     }
-    Ok(losses)
 }

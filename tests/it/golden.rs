@@ -478,7 +478,8 @@ fn gradients_and_five_adam_updates_agree() {
                 gradients_agree(network, &gradient.to_vec1::<f32>().unwrap());
             }
             let moments = moments.entry(network.name.clone()).or_default();
-            adam::update(network.theta(), gradient, moments, 3e-4, 0.5).unwrap();
+            let norm = adam::norm(gradient).unwrap();
+            adam::update(network.theta(), gradient, norm, moments, 3e-4, 0.5).unwrap();
         }
     }
 }
