@@ -39,16 +39,17 @@ pub enum TrainError {
     /// A tensor operation failed.
     #[error("computing: {0}")]
     Tensor(String),
-    /// A loss was no number.
+    /// A loss or a gradient was no number.
     #[error(
-        "the loss of update {update} is not finite ({losses:?}; episodes {}); lower `training.learning_rate`",
+        "{what} of update {update} is not finite; its episodes: {}; leave out the odd one among them, or lower \
+         `training.learning_rate` in a --config",
         episodes.join(", ")
     )]
     NotFinite {
         /// Which update.
         update: u64,
-        /// Its losses.
-        losses: Losses,
+        /// The loss, or which network's gradient.
+        what: String,
         /// The episodes of its batch.
         episodes: Vec<String>,
     },
@@ -150,18 +151,20 @@ pub fn run(
                 state.moments.clear();
             }
         }
-        let losses = step::update(model, &batch, &mut state.moments, &phase)?;
-        if !losses.is_finite() {
+        let gradients = step::gradients(model, &batch, &phase)?;
+        if let Some(what) = gradients.not_finite() {
             let episodes = episodes
                 .iter()
                 .map(|episode| episode.meta.id.clone())
                 .collect();
             return Err(TrainError::NotFinite {
                 update: state.update,
-                losses,
+                what,
                 episodes,
             });
         }
+        gradients.apply(model, &mut state.moments, &phase)?;
+        let losses = gradients.losses;
         state.update += 1;
         let mean = running.map_or(losses, |running| running.towards(losses, 0.05));
         running = Some(mean);

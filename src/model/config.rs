@@ -140,7 +140,10 @@ impl Config {
             ("hidden", self.hidden),
             ("mixtures", self.mixtures),
             ("training.batch", self.training.batch),
-            ("training.n_step_after", self.training.n_step_after.len() + 1),
+            (
+                "training.n_step_after",
+                self.training.n_step_after.len() + 1,
+            ),
         ];
         if let Some((key, size)) = sizes
             .into_iter()
@@ -177,9 +180,15 @@ mod tests {
 
     #[test]
     fn the_named_models_are_valid_and_what_cannot_be_is_refused_by_key() {
-        for (name, preset) in Config::NAMES.iter().flat_map(|name| Preset::ALL.map(|p| (name, p))) {
+        for (name, preset) in Config::NAMES
+            .iter()
+            .flat_map(|name| Preset::ALL.map(|p| (name, p)))
+        {
             let config = Config::preset(name, preset);
-            assert!(config.is_some_and(|c| c.validate().is_ok()), "{name} {preset:?}");
+            assert!(
+                config.is_some_and(|c| c.validate().is_ok()),
+                "{name} {preset:?}"
+            );
         }
         let refused = |change: fn(&mut Config)| {
             let mut config = Config::named("v-h-p").expect("a known name");
@@ -195,7 +204,10 @@ mod tests {
             Err("proprio")
         );
         assert_eq!(refused(|c| c.experts.push(Expert::Concat)), Err("experts"));
-        assert_eq!(refused(|c| c.training.rollouts = 1.5), Err("training.rollouts"));
+        assert_eq!(
+            refused(|c| c.training.rollouts = 1.5),
+            Err("training.rollouts")
+        );
         assert_eq!(refused(|c| c.training.segment = 1), Err("training.segment"));
         assert_eq!(
             refused(|c| c.training.learning_rate = f64::NAN),

@@ -19,7 +19,13 @@ fn balanced(posterior: &DiagGaussian, prior: &DiagGaussian, balance: f64) -> Res
     }
     let towards_posterior = posterior.detach().kl(prior)?;
     let towards_prior = posterior.kl(&prior.detach())?;
-    towards_posterior.affine(2.0 * balance, 0.0)? + towards_prior.affine(2.0 - 2.0 * balance, 0.0)?
+    towards_posterior.affine(2.0 * balance, 0.0)?
+        + towards_prior.affine(2.0 - 2.0 * balance, 0.0)?
+}
+
+/// What each latent adds to it: `(B, T, Z)`.
+pub fn kl_per_latent(filtered: &Filtered) -> Result<Tensor> {
+    filtered.posterior.kl_per_latent(&filtered.prior)
 }
 
 /// KL of each posterior against the prior stated `n` steps before it, for n = 2 … `n_step` (overshooting): one tensor

@@ -25,10 +25,15 @@ impl DiagGaussian {
 
     /// KL(self ‖ prior) in nats, summed over latents: `(…)`.
     pub fn kl(&self, prior: &Self) -> Result<Tensor> {
+        self.kl_per_latent(prior)?.sum(D::Minus1)
+    }
+
+    /// What each latent adds to KL(self ‖ prior), in nats: `(…, Z)`.
+    pub fn kl_per_latent(&self, prior: &Self) -> Result<Tensor> {
         let (own, other) = (self.variance()?, prior.variance()?);
         let distance = (&prior.mean - &self.mean)?.sqr()?;
         let terms = ((((&own + distance)? / &other)? + other.log()?)? - own.log()?)?;
-        (terms - 1.0)?.sum(D::Minus1)?.affine(0.5, 0.0)
+        (terms - 1.0)?.affine(0.5, 0.0)
     }
 
     fn variance(&self) -> Result<Tensor> {

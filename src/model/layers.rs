@@ -39,9 +39,7 @@ impl Builder {
     fn uniform(&self, activation: Activation, reached: usize, fan_in: usize) -> Init {
         match self.init {
             config::Init::Torch => Init::Uniform(1.0 / (fan_in as f32).sqrt()),
-            config::Init::Scaled => {
-                Init::Uniform(gain(activation) * (3.0 / reached as f32).sqrt())
-            }
+            config::Init::Scaled => Init::Uniform(gain(activation) * (3.0 / reached as f32).sqrt()),
         }
     }
 

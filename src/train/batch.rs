@@ -144,11 +144,7 @@ impl Batch {
             beliefs,
             seen,
             controls: Tensor::from_vec(controls, (count, beliefs - 1, Config::CONTROL), device)?,
-            alphas: Tensor::from_vec(
-                alphas(&sets, switches),
-                (count, beliefs, switches),
-                device,
-            )?,
+            alphas: Tensor::from_vec(alphas(&sets, switches), (count, beliefs, switches), device)?,
             sensed: (0..switches - 1).map(|i| members(&sets, i)).collect(),
             decoded,
             noise: Tensor::from_vec(noise, shape, device)?,
@@ -189,7 +185,11 @@ fn draw_decoded(
     for episode in 0..episodes {
         let mut drawn = rand::seq::index::sample(rng, beliefs, wanted).into_vec();
         drawn.sort_unstable();
-        rows.extend(drawn.iter().map(|belief| (episode * beliefs + belief) as u32));
+        rows.extend(
+            drawn
+                .iter()
+                .map(|belief| (episode * beliefs + belief) as u32),
+        );
     }
     Some(rows)
 }

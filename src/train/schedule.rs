@@ -110,7 +110,10 @@ mod tests {
         (training.autoencoder_epochs, training.bases_epochs) = (2, 4);
         let stage = |epoch: u64| Phase::of(&training, epoch * 10 + 9, 10, 0.5).stage;
         let stages = [0, 1, 2, 3].map(stage);
-        assert_eq!(stages, [Stage::Autoencoder, Stage::Bases, Stage::Bases, Stage::All]);
+        assert_eq!(
+            stages,
+            [Stage::Autoencoder, Stage::Bases, Stage::Bases, Stage::All]
+        );
     }
 
     #[test]

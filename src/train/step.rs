@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use candle_core::Tensor;
+use candle_core::backprop::GradStore;
 use serde::{Deserialize, Serialize};
 
 use super::TrainError;
@@ -51,6 +52,17 @@ impl Losses {
             negative_elbo: mix(self.negative_elbo, newest.negative_elbo),
         }
     }
+}
+
+/// The loss of a batch, and what it is made of.
+#[derive(Debug)]
+pub struct Terms {
+    /// The loss, a scalar to differentiate.
+    pub total: Tensor,
+    /// It and its terms as numbers.
+    pub losses: Losses,
+    /// What each latent adds to `losses.kl`, in nats: a latent near 0 carries nothing.
+    pub kl_per_latent: Vec<f32>,
 }
 
 /// Every expert at every belief, `(B, T, Z)` each. Beliefs at which an expert is off are not encoded.
@@ -104,12 +116,7 @@ fn encode_some(
 }
 
 /// The loss of a batch, with gradients where `train`, and its terms.
-pub fn loss(
-    model: &Model,
-    batch: &Batch,
-    phase: &Phase,
-    train: bool,
-) -> Result<(Tensor, Losses), TrainError> {
+pub fn loss(model: &Model, batch: &Batch, phase: &Phase, train: bool) -> Result<Terms, TrainError> {
     let (config, training) = (&model.config, &model.config.training);
     let weights = model.weights()?;
     let experts = encode(model, &weights, batch, train)?;
@@ -126,6 +133,7 @@ pub fn loss(
         config.prior_expert,
     )?;
     let plain_kl = filtered.posterior.kl(&filtered.prior)?.mean_all()?;
+    let kl_per_latent = elbo::kl_per_latent(&filtered)?.mean((0, 1))?.to_vec1()?;
     let mut kl = elbo::kl(&filtered, training.kl_balance)?.mean_all()?;
     for term in elbo::overshooting(
         &model.dynamics,
@@ -179,45 +187,94 @@ pub fn loss(
         losses.negative_elbo += mean + seen.dim(1)? as f32 * 0.5 * std::f32::consts::PI.ln();
     }
     losses.loss = total.to_scalar()?;
-    Ok((total, losses))
+    Ok(Terms {
+        total,
+        losses,
+        kl_per_latent,
+    })
 }
 
-/// One update of every network.
-pub fn update(
-    model: &Model,
-    batch: &Batch,
-    moments: &mut BTreeMap<String, Moments>,
-    phase: &Phase,
-) -> Result<Losses, TrainError> {
-    let (total, losses) = loss(model, batch, phase, true)?;
-    if !losses.is_finite() {
-        return Ok(losses);
-    }
-    let gradients = total.backward()?;
-    let training = &model.config.training;
-    for network in model.networks() {
-        let Some(gradient) = gradients.get(network.theta()) else {
-            continue;
-        };
-        let dynamics = network.name == model.dynamics.network.name;
-        let clip = if dynamics || training.clipped == Clipped::All {
-            training.clip
-        } else {
-            f32::INFINITY
-        };
-        let moments = moments.entry(network.name.clone()).or_default();
-        match phase.stage {
-            Stage::Autoencoder if dynamics => {}
-            Stage::Bases if dynamics => {
-                // A gradient of zero leaves what is not trained yet where it is: its moments are zero too.
-                let scale = (clip / (adam::norm(gradient)? + 1e-6)).min(1.0);
-                let bases = (gradient * model.dynamics.bases_mask()?)?.affine(scale.into(), 0.0)?;
-                adam::update(network.theta(), &bases, moments, phase.rate, f32::INFINITY)?;
-            }
-            _ => {
-                adam::update(network.theta(), gradient, moments, phase.rate, clip)?;
+/// What a batch says of the weights, before anything is changed by it.
+#[derive(Debug)]
+pub struct Gradients {
+    /// Of these weights on this batch.
+    pub losses: Losses,
+    /// What each latent adds to `losses.kl`, in nats.
+    pub kl_per_latent: Vec<f32>,
+    /// Norm of each network's gradient before clipping, in the model's order; none where the loss is no number.
+    pub norms: Vec<(String, f32)>,
+    of_theta: Option<GradStore>,
+}
+
+/// Differentiates the loss of a batch.
+pub fn gradients(model: &Model, batch: &Batch, phase: &Phase) -> Result<Gradients, TrainError> {
+    let terms = loss(model, batch, phase, true)?;
+    let mut gradients = Gradients {
+        losses: terms.losses,
+        kl_per_latent: terms.kl_per_latent,
+        norms: Vec::new(),
+        of_theta: None,
+    };
+    if gradients.losses.is_finite() {
+        let of_theta = terms.total.backward()?;
+        for network in model.networks() {
+            if let Some(gradient) = of_theta.get(network.theta()) {
+                let norm = adam::norm(gradient)?;
+                gradients.norms.push((network.name.clone(), norm));
             }
         }
+        gradients.of_theta = Some(of_theta);
     }
-    Ok(losses)
+    Ok(gradients)
+}
+
+impl Gradients {
+    /// What is not a number: the loss, or the gradient of a network. An update by it would spoil the weights and
+    /// Adam's moments for good.
+    pub fn not_finite(&self) -> Option<String> {
+        if !self.losses.is_finite() {
+            return Some(format!("the loss ({:?})", self.losses));
+        }
+        let (network, norm) = self.norms.iter().find(|(_, norm)| !norm.is_finite())?;
+        Some(format!("the gradient of `{network}` (norm {norm})"))
+    }
+
+    /// One update of every network that this phase trains: clip, Adam.
+    pub fn apply(
+        &self,
+        model: &Model,
+        moments: &mut BTreeMap<String, Moments>,
+        phase: &Phase,
+    ) -> Result<(), TrainError> {
+        let Some(of_theta) = &self.of_theta else {
+            return Ok(());
+        };
+        let training = &model.config.training;
+        let differentiated = model
+            .networks()
+            .filter_map(|network| Some((network, of_theta.get(network.theta())?)));
+        for ((network, gradient), (_, norm)) in differentiated.zip(&self.norms) {
+            let dynamics = network.name == model.dynamics.network.name;
+            let gradient = match phase.stage {
+                Stage::Autoencoder if dynamics => continue,
+                // Where the gradient and its moments are zero, Adam leaves a number where it is.
+                Stage::Bases if dynamics => &(gradient * model.dynamics.bases_mask()?)?,
+                _ => gradient,
+            };
+            let clip = if dynamics || training.clipped == Clipped::All {
+                training.clip
+            } else {
+                f32::INFINITY
+            };
+            adam::update(
+                network.theta(),
+                gradient,
+                *norm,
+                moments.entry(network.name.clone()).or_default(),
+                phase.rate,
+                clip,
+            )?;
+        }
+        Ok(())
+    }
 }

@@ -36,9 +36,17 @@ pub fn validate(model: &Model, val: &[Episode]) -> Result<Validation, TrainError
     let phase = Phase::of(&model.config.training, 0, 1, 1.0);
     let mut losses = Losses::default();
     for (i, part) in val.chunks(model.config.training.batch).enumerate() {
-        let (_, of_part) = step::loss(model, &Batch::new(&model.config, part, None)?, &phase, false)?;
+        let of_part = step::loss(
+            model,
+            &Batch::new(&model.config, part, None)?,
+            &phase,
+            false,
+        )?;
         let seen = i * model.config.training.batch;
-        losses = losses.towards(of_part, part.len() as f32 / (seen + part.len()) as f32);
+        losses = losses.towards(
+            of_part.losses,
+            part.len() as f32 / (seen + part.len()) as f32,
+        );
     }
     let inspector = Inspector::new(model)?;
     let protocol = Protocol::for_episode(val[0].steps());

@@ -421,8 +421,15 @@ fn terms(model: &Model, seen: &[Tensor], controls: &Tensor, n_step: usize) -> [T
             .0
     };
     let mut kl = elbo::kl(&ours, 0.5).unwrap().mean_all().unwrap();
-    for term in
-        elbo::overshooting(&model.dynamics, &weights.dynamics, &ours, controls, n_step, 0.5).unwrap()
+    for term in elbo::overshooting(
+        &model.dynamics,
+        &weights.dynamics,
+        &ours,
+        controls,
+        n_step,
+        0.5,
+    )
+    .unwrap()
     {
         kl = (kl + term.mean_all().unwrap()).unwrap();
     }
@@ -468,7 +475,8 @@ fn gradients_and_five_adam_updates_agree() {
                 gradients_agree(network, &gradient.to_vec1::<f32>().unwrap());
             }
             let moments = moments.entry(network.name.clone()).or_default();
-            adam::update(network.theta(), gradient, moments, 3e-4, 0.5).unwrap();
+            let norm = adam::norm(gradient).unwrap();
+            adam::update(network.theta(), gradient, norm, moments, 3e-4, 0.5).unwrap();
         }
     }
 }

@@ -112,7 +112,11 @@ impl Config {
             latent: 16,
             hidden: 256,
             mixtures: 15,
-            activation: if paper { Activation::Relu } else { Activation::Elu },
+            activation: if paper {
+                Activation::Relu
+            } else {
+                Activation::Elu
+            },
             haptic: Channels::of(&HAPTIC_CHANNELS),
             proprio: Channels::of(&PROPRIO_CHANNELS),
             training: Training {

@@ -51,9 +51,26 @@ mod tests {
     #[test]
     fn a_key_is_set_and_what_is_wrong_is_named() {
         let config = Config::preset("vhp", Preset::Fast).expect("a known name");
-        assert!((config.set("training.rollouts=0.25").expect("valid").training.rollouts - 0.25).abs() < 1e-12);
-        assert_eq!(config.set("activation=relu").expect("valid").activation, Activation::Relu);
-        assert!(!config.set("prior_expert = false").expect("valid").prior_expert);
+        assert!(
+            (config
+                .set("training.rollouts=0.25")
+                .expect("valid")
+                .training
+                .rollouts
+                - 0.25)
+                .abs()
+                < 1e-12
+        );
+        assert_eq!(
+            config.set("activation=relu").expect("valid").activation,
+            Activation::Relu
+        );
+        assert!(
+            !config
+                .set("prior_expert = false")
+                .expect("valid")
+                .prior_expert
+        );
         for (wrong, named) in [
             ("training.nothing=1", "nothing"),
             ("nowhere.rate=1", "nowhere"),

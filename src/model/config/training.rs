@@ -175,9 +175,15 @@ mod tests {
         let mut training = Config::preset("vhp", Preset::Released)
             .expect("a known name")
             .training;
-        assert_eq!([0, 3071, 3072].map(|epoch| training.n_step(epoch)), [2, 2, 3]);
+        assert_eq!(
+            [0, 3071, 3072].map(|epoch| training.n_step(epoch)),
+            [2, 2, 3]
+        );
         assert!((training.kl_weight(0) - 1.0).abs() < 1e-12);
         training.kl_annealing = 4;
-        assert_eq!([0, 1, 3, 9].map(|epoch| training.kl_weight(epoch)), [0.25, 0.5, 1.0, 1.0]);
+        assert_eq!(
+            [0, 1, 3, 9].map(|epoch| training.kl_weight(epoch)),
+            [0.25, 0.5, 1.0, 1.0]
+        );
     }
 }
