@@ -18,7 +18,8 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use self::batch::Batch;
+use self::batch::{Batch, Draws};
+use self::schedule::Phase;
 use self::state::State;
 use self::step::Losses;
 use self::validate::Validation;
@@ -39,16 +40,17 @@ pub enum TrainError {
     /// A tensor operation failed.
     #[error("computing: {0}")]
     Tensor(String),
-    /// A loss was no number.
+    /// A loss or a gradient was no number.
     #[error(
-        "the loss of update {update} is not finite ({losses:?}; episodes {}); lower `training.learning_rate`",
+        "{what} of update {update} is not finite; its episodes: {}; leave out the odd one among them, or lower \
+         `training.learning_rate` in a --config",
         episodes.join(", ")
     )]
     NotFinite {
         /// Which update.
         update: u64,
-        /// Its losses.
-        losses: Losses,
+        /// The loss, or which network's gradient.
+        what: String,
         /// The episodes of its batch.
         episodes: Vec<String>,
     },
@@ -136,20 +138,34 @@ pub fn run(
             state.update,
         );
         let episodes: Vec<&Episode> = chosen.into_iter().map(|i| &run.train[i]).collect();
-        let batch = Batch::new(&model.config, &episodes, Some((seed, state.update)))?;
-        let rate = schedule::learning_rate(training, state.update, fraction);
-        let losses = step::update(model, &batch, &mut state.moments, rate)?;
-        if !losses.is_finite() {
+        let phase = Phase::of(training, state.update, epoch_updates, fraction);
+        let draws = Draws {
+            seed,
+            update: state.update,
+            segment: phase.segment,
+        };
+        let batch = Batch::new(&model.config, &episodes, Some(draws))?;
+        if state.update > 0 {
+            let before = Phase::of(training, state.update - 1, epoch_updates, fraction);
+            if before.stage != phase.stage {
+                // Each stage has an optimiser of its own.
+                state.moments.clear();
+            }
+        }
+        let gradients = step::gradients(model, &batch, &phase)?;
+        if let Some(what) = gradients.not_finite() {
             let episodes = episodes
                 .iter()
                 .map(|episode| episode.meta.id.clone())
                 .collect();
             return Err(TrainError::NotFinite {
                 update: state.update,
-                losses,
+                what,
                 episodes,
             });
         }
+        gradients.apply(model, &mut state.moments, &phase)?;
+        let losses = gradients.losses;
         state.update += 1;
         let mean = running.map_or(losses, |running| running.towards(losses, 0.05));
         running = Some(mean);
@@ -168,7 +184,7 @@ pub fn run(
             validation,
         };
         if progress.validation.is_some() {
-            state::append_metrics(run.folder, &progress, rate)?;
+            state::append_metrics(run.folder, &progress, phase.rate)?;
         }
         if last_save.elapsed() > CHECKPOINT_EVERY {
             state.save(model, run.folder)?;

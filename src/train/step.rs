@@ -3,14 +3,18 @@
 use std::collections::BTreeMap;
 
 use candle_core::Tensor;
+use candle_core::backprop::GradStore;
 use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::batch::Batch;
+use super::schedule::{Phase, Stage};
+use crate::model::config::Clipped;
+use crate::model::encoder::Encoder;
 use crate::model::filter::{self, Inputs};
 use crate::model::gaussian::DiagGaussian;
 use crate::model::kernel::adam::{self, Moments};
-use crate::model::{Model, elbo};
+use crate::model::{Model, Weights, elbo};
 
 /// What an update minimised, each a mean over beliefs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -50,30 +54,77 @@ impl Losses {
     }
 }
 
-/// The loss of a batch, with gradients where `train`, and its terms.
-pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<(Tensor, Losses), TrainError> {
-    let config = &model.config;
-    let weights = model.weights()?;
+/// The loss of a batch, and what it is made of.
+#[derive(Debug)]
+pub struct Terms {
+    /// The loss, a scalar to differentiate.
+    pub total: Tensor,
+    /// It and its terms as numbers.
+    pub losses: Losses,
+    /// What each latent adds to `losses.kl`, in nats: a latent near 0 carries nothing.
+    pub kl_per_latent: Vec<f32>,
+}
+
+/// Every expert at every belief, `(B, T, Z)` each. Beliefs at which an expert is off are not encoded.
+fn encode(
+    model: &Model,
+    weights: &Weights,
+    batch: &Batch,
+    train: bool,
+) -> Result<Vec<DiagGaussian>, TrainError> {
     let (b, t) = (batch.episodes, batch.beliefs);
+    let mut streams = batch.seen.as_slice();
     let mut experts = Vec::new();
-    for ((encoder, weights), seen) in model
-        .encoders
-        .iter()
-        .zip(&weights.encoders)
-        .zip(&batch.seen)
-    {
-        let g = encoder.encode(seen, weights, train)?;
-        let shape = |x: &Tensor| x.reshape((b, t, config.latent));
-        experts.push(DiagGaussian {
-            mean: shape(&g.mean)?,
-            log_var: shape(&g.log_var)?,
-        });
+    for (i, encoder) in model.encoders.iter().enumerate() {
+        let (seen, rest) = streams.split_at(encoder.streams());
+        streams = rest;
+        let weights = &weights.encoders[i];
+        let said = match &batch.sensed[i] {
+            None => encoder.encode(seen, weights, train)?,
+            Some(rows) => encode_some(encoder, seen, weights, rows, train)?,
+        };
+        experts.push(said.reshape((b, t, model.config.latent))?);
     }
+    Ok(experts)
+}
+
+/// `encoder` at some rows; elsewhere, where its α is 0, what it says of the first of them.
+fn encode_some(
+    encoder: &Encoder,
+    seen: &[Tensor],
+    weights: &[Tensor],
+    rows: &[u32],
+    train: bool,
+) -> Result<DiagGaussian, TrainError> {
+    let device = seen[0].device();
+    let rows = if rows.is_empty() { &[0] } else { rows };
+    let mut places = vec![0_u32; seen[0].dim(0)?];
+    for (place, &row) in (0..).zip(rows) {
+        places[row as usize] = place;
+    }
+    let places = Tensor::new(places, device)?;
+    let rows = Tensor::new(rows, device)?;
+    let seen = seen
+        .iter()
+        .map(|seen| seen.index_select(&rows, 0))
+        .collect::<candle_core::Result<Vec<_>>>()?;
+    let said = encoder.encode(&seen, weights, train)?;
+    Ok(DiagGaussian {
+        mean: said.mean.index_select(&places, 0)?,
+        log_var: said.log_var.index_select(&places, 0)?,
+    })
+}
+
+/// The loss of a batch, with gradients where `train`, and its terms.
+pub fn loss(model: &Model, batch: &Batch, phase: &Phase, train: bool) -> Result<Terms, TrainError> {
+    let (config, training) = (&model.config, &model.config.training);
+    let weights = model.weights()?;
+    let experts = encode(model, &weights, batch, train)?;
     let inputs = Inputs {
         experts: &experts,
         alphas: &batch.alphas,
         controls: &batch.controls,
-        noise: train.then_some(&batch.noise),
+        noise: (train && training.sampled).then_some(&batch.noise),
     };
     let filtered = filter::filter(
         &model.dynamics,
@@ -81,71 +132,149 @@ pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<(Tensor, Losses
         inputs,
         config.prior_expert,
     )?;
-    let plain_kl = elbo::kl(&filtered)?.mean_all()?;
-    let mut kl = plain_kl.clone();
-    let steps = config.training.n_step;
+    let plain_kl = filtered.posterior.kl(&filtered.prior)?.mean_all()?;
+    let kl_per_latent = elbo::kl_per_latent(&filtered)?.mean((0, 1))?.to_vec1()?;
+    let mut kl = elbo::kl(&filtered, training.kl_balance)?.mean_all()?;
     for term in elbo::overshooting(
         &model.dynamics,
         &weights.dynamics,
         &filtered,
         &batch.controls,
-        steps,
+        phase.n_step,
+        training.kl_balance,
     )? {
         kl = (kl + term.mean_all()?)?;
     }
-    let mut total = kl.affine(config.training.kl_weight, 0.0)?;
+    let mut total = kl.affine(phase.kl_weight, 0.0)?;
     let latents = filtered.z.flatten(0, 1)?;
+    let rows = batch
+        .decoded
+        .as_deref()
+        .map(|rows| Tensor::new(rows, latents.device()))
+        .transpose()?;
+    let decoded = |all: &Tensor| match &rows {
+        Some(rows) => all.index_select(rows, 0),
+        None => Ok(all.clone()),
+    };
+    let latents = decoded(&latents)?;
+    let count = latents.dim(0)?;
     let mut losses = Losses {
         kl: plain_kl.to_scalar()?,
         ..Losses::default()
     };
     losses.negative_elbo = losses.kl;
     for (i, decoder) in model.decoders.iter().enumerate() {
-        let weight = config.training.error_weights.get(i).copied().unwrap_or(1.0);
-        let each = vec![weight / (b * t) as f32; b * t];
+        let weight = training.error_weights.get(i).copied().unwrap_or(1.0);
+        let weight = weight * training.error_weight as f32;
+        if weight == 0.0 {
+            continue;
+        }
+        let seen = decoded(&batch.seen[i])?;
+        let each = vec![weight / count as f32; count];
         let (error, per_belief) =
-            decoder.squared_error(&latents, &weights.decoders[i], &batch.seen[i], each, train)?;
+            decoder.squared_error(&latents, &weights.decoders[i], &seen, each, train)?;
         total = (total + error)?;
         let per_belief = per_belief
             .lock()
             .unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mean = per_belief.iter().sum::<f32>() / per_belief.len() as f32;
+        let mean = per_belief.iter().sum::<f32>() / count as f32;
         *(if i == 0 {
             &mut losses.vision
         } else {
             &mut losses.windows
         }) += mean;
         // −ln N(x; x̂, ½ I) = ‖x − x̂‖² + D/2 ln π.
-        losses.negative_elbo +=
-            mean + batch.seen[i].dim(1)? as f32 * 0.5 * std::f32::consts::PI.ln();
+        losses.negative_elbo += mean + seen.dim(1)? as f32 * 0.5 * std::f32::consts::PI.ln();
     }
     losses.loss = total.to_scalar()?;
-    Ok((total, losses))
+    Ok(Terms {
+        total,
+        losses,
+        kl_per_latent,
+    })
 }
 
-/// One update of every network.
-pub fn update(
-    model: &Model,
-    batch: &Batch,
-    moments: &mut BTreeMap<String, Moments>,
-    rate: f64,
-) -> Result<Losses, TrainError> {
-    let (total, losses) = loss(model, batch, true)?;
-    if !losses.is_finite() {
-        return Ok(losses);
+/// What a batch says of the weights, before anything is changed by it.
+#[derive(Debug)]
+pub struct Gradients {
+    /// Of these weights on this batch.
+    pub losses: Losses,
+    /// What each latent adds to `losses.kl`, in nats.
+    pub kl_per_latent: Vec<f32>,
+    /// Norm of each network's gradient before clipping, in the model's order; none where the loss is no number.
+    pub norms: Vec<(String, f32)>,
+    of_theta: Option<GradStore>,
+}
+
+/// Differentiates the loss of a batch.
+pub fn gradients(model: &Model, batch: &Batch, phase: &Phase) -> Result<Gradients, TrainError> {
+    let terms = loss(model, batch, phase, true)?;
+    let mut gradients = Gradients {
+        losses: terms.losses,
+        kl_per_latent: terms.kl_per_latent,
+        norms: Vec::new(),
+        of_theta: None,
+    };
+    if gradients.losses.is_finite() {
+        let of_theta = terms.total.backward()?;
+        for network in model.networks() {
+            if let Some(gradient) = of_theta.get(network.theta()) {
+                let norm = adam::norm(gradient)?;
+                gradients.norms.push((network.name.clone(), norm));
+            }
+        }
+        gradients.of_theta = Some(of_theta);
     }
-    let gradients = total.backward()?;
-    for network in model.networks() {
-        if let Some(gradient) = gradients.get(network.theta()) {
-            let moments = moments.entry(network.name.clone()).or_default();
+    Ok(gradients)
+}
+
+impl Gradients {
+    /// What is not a number: the loss, or the gradient of a network. An update by it would spoil the weights and
+    /// Adam's moments for good.
+    pub fn not_finite(&self) -> Option<String> {
+        if !self.losses.is_finite() {
+            return Some(format!("the loss ({:?})", self.losses));
+        }
+        let (network, norm) = self.norms.iter().find(|(_, norm)| !norm.is_finite())?;
+        Some(format!("the gradient of `{network}` (norm {norm})"))
+    }
+
+    /// One update of every network that this phase trains: clip, Adam.
+    pub fn apply(
+        &self,
+        model: &Model,
+        moments: &mut BTreeMap<String, Moments>,
+        phase: &Phase,
+    ) -> Result<(), TrainError> {
+        let Some(of_theta) = &self.of_theta else {
+            return Ok(());
+        };
+        let training = &model.config.training;
+        let differentiated = model
+            .networks()
+            .filter_map(|network| Some((network, of_theta.get(network.theta())?)));
+        for ((network, gradient), (_, norm)) in differentiated.zip(&self.norms) {
+            let dynamics = network.name == model.dynamics.network.name;
+            let gradient = match phase.stage {
+                Stage::Autoencoder if dynamics => continue,
+                // Where the gradient and its moments are zero, Adam leaves a number where it is.
+                Stage::Bases if dynamics => &(gradient * model.dynamics.bases_mask()?)?,
+                _ => gradient,
+            };
+            let clip = if dynamics || training.clipped == Clipped::All {
+                training.clip
+            } else {
+                f32::INFINITY
+            };
             adam::update(
                 network.theta(),
                 gradient,
-                moments,
-                rate,
-                model.config.training.clip,
+                *norm,
+                moments.entry(network.name.clone()).or_default(),
+                phase.rate,
+                clip,
             )?;
         }
+        Ok(())
     }
-    Ok(losses)
 }

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::batch::Batch;
+use super::schedule::Phase;
 use super::step::{self, Losses};
 use crate::episode::Episode;
 use crate::eval::{self, Protocol};
@@ -32,11 +33,20 @@ pub fn validate(model: &Model, val: &[Episode]) -> Result<Validation, TrainError
         });
     }
     // In batches, so that memory does not grow with the length of episodes.
+    let phase = Phase::of(&model.config.training, 0, 1, 1.0);
     let mut losses = Losses::default();
     for (i, part) in val.chunks(model.config.training.batch).enumerate() {
-        let (_, of_part) = step::loss(model, &Batch::new(&model.config, part, None)?, false)?;
+        let of_part = step::loss(
+            model,
+            &Batch::new(&model.config, part, None)?,
+            &phase,
+            false,
+        )?;
         let seen = i * model.config.training.batch;
-        losses = losses.towards(of_part, part.len() as f32 / (seen + part.len()) as f32);
+        losses = losses.towards(
+            of_part.losses,
+            part.len() as f32 / (seen + part.len()) as f32,
+        );
     }
     let inspector = Inspector::new(model)?;
     let protocol = Protocol::for_episode(val[0].steps());

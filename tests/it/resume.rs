@@ -83,7 +83,7 @@ fn a_stopped_run_ends_where_an_uninterrupted_one_does() {
         seed: 9,
         budget: Budget {
             epochs: Some(3),
-            minutes: None,
+            ..Budget::default()
         },
         ..Origin::default()
     };

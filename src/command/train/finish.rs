@@ -46,7 +46,11 @@ pub fn write(
     let probe = fit_probe(model, sets, folder)?;
     write_mean_frame(model, sets, folder)?;
     let config = &model.config;
-    let names: Vec<&str> = config.experts.iter().map(|expert| expert.name()).collect();
+    let names: Vec<&str> = config
+        .streams()
+        .iter()
+        .map(|stream| stream.name())
+        .collect();
     let at_mean = statistics::error_at_the_mean(config, &sets.train);
     let error_at_mean: Vec<Value> = names
         .iter()

@@ -34,16 +34,16 @@ pub fn norm(gradient: &Tensor) -> Result<f32> {
     Ok(sum.sqrt() as f32)
 }
 
-/// One update of `theta` against `gradient`, both flat, with learning rate `rate` and the gradient scaled so that its
-/// norm is at most `clip`. Returns the norm before clipping.
+/// One update of `theta` against `gradient`, both flat, with learning rate `rate` and the gradient, whose norm is
+/// `norm`, scaled so that it is at most `clip`.
 pub fn update(
     theta: &Tensor,
     gradient: &Tensor,
+    norm: f32,
     moments: &mut Moments,
     rate: f64,
     clip: f32,
-) -> Result<f32> {
-    let norm = norm(gradient)?;
+) -> Result<()> {
     // PyTorch's clip_grad_norm_ divides by norm + 1e-6.
     let scale = (clip / (norm + 1e-6)).min(1.0);
     moments.first.resize(theta.elem_count(), 0.0);
@@ -61,7 +61,7 @@ pub fn update(
         .moments
         .into_inner()
         .unwrap_or_else(std::sync::PoisonError::into_inner);
-    result.map(|()| norm)
+    result
 }
 
 struct Pass {
