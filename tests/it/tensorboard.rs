@@ -91,7 +91,9 @@ fn a_torn_record_costs_itself_alone_and_a_resumed_run_says_where_it_goes_on() {
     // Field 2 is the step, 7 a session's start, 5 scalars; all numbers here fit one byte.
     let kinds = |file| -> Vec<[u8; 3]> {
         let events = records(file).into_iter().skip(1);
-        events.map(|event| event[9..12].try_into().unwrap()).collect()
+        events
+            .map(|event| event[9..12].try_into().unwrap())
+            .collect()
     };
     let [step, start, scalars] = [2 << 3, 7 << 3 | 2, 5 << 3 | 2];
     assert_eq!(
