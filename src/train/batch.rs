@@ -5,7 +5,6 @@ use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
 
 use super::{TrainError, masks};
 use crate::episode::Episode;
@@ -52,14 +51,14 @@ pub fn choose(
 
 impl Batch {
     /// A batch with the noise and masks of a seed and an update; without, on the mean path with every expert. Episodes
-    /// must be of one length.
+    /// must be of one length. Runs on one thread, the loader's, and leaves the others to the step.
     pub fn new(
         config: &Config,
         episodes: &[&Episode],
         draws: Option<(u64, u64)>,
     ) -> Result<Self, TrainError> {
         let observed: Vec<Observations> = episodes
-            .par_iter()
+            .iter()
             .map(|episode| observe(config, episode))
             .collect::<Result<_, _>>()?;
         let beliefs = observed.first().map_or(0, |o| o.beliefs);
