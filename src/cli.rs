@@ -175,6 +175,12 @@ pub struct TrainArgs {
     /// Worker threads [default: one per core]
     #[arg(long)]
     pub threads: Option<usize>,
+    /// Episodes to hold in memory, in bytes, KiB, MiB or GiB; others lie in the run folder while it runs
+    #[arg(long, value_parser = parse_bytes, default_value = "512MiB")]
+    pub memory: u64,
+    /// Time between checkpoints, each of which can be resumed from and looked at
+    #[arg(long, value_name = "MINUTES", value_parser = parse_interval, default_value = "3")]
+    pub checkpoint_minutes: f64,
     /// Go on from the run folder's last checkpoint
     #[arg(long)]
     pub resume: bool,
@@ -232,6 +238,26 @@ fn parse_preset(name: &str) -> Result<Preset, String> {
         .into_iter()
         .find(|preset| preset.name() == name)
         .ok_or_else(|| format!("there are {}", Preset::ALL.map(Preset::name).join(", ")))
+}
+
+/// Up to a month; 0 is after every update.
+fn parse_interval(text: &str) -> Result<f64, String> {
+    let minutes = text.parse::<f64>().ok();
+    minutes
+        .filter(|minutes| (0.0..=43_200.0).contains(minutes))
+        .ok_or_else(|| format!("{text:?} is not a number of minutes from 0 to 43200"))
+}
+
+fn parse_bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, u64); 3] = [("KiB", 1 << 10), ("MiB", 1 << 20), ("GiB", 1 << 30)];
+    let unit = UNITS
+        .into_iter()
+        .find_map(|(unit, bytes)| Some((text.strip_suffix(unit)?, bytes)));
+    let (number, unit) = unit.unwrap_or((text, 1));
+    let bytes = number.trim().parse::<u64>().ok();
+    bytes
+        .and_then(|number| number.checked_mul(unit))
+        .ok_or_else(|| format!("{text:?} is not a whole number of bytes, KiB, MiB or GiB: 2GiB"))
 }
 
 fn parse_split(text: &str) -> Result<Split, String> {

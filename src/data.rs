@@ -1,7 +1,7 @@
 //! Datasets: ROS 2 MCAP files in and out, and their streams laid out on steps and windows.
 //!
 //! [`Dataset`] opens files and reads episodes, [`DatasetWriter`] makes them, [`align`] puts a recording on the clock
-//! of its images. What a network wants of an episode (tensors, scaling) is the model's business, not this folder's.
+//! of its images, a [`Store`] keeps more of them than memory holds. What a network wants of an episode (tensors, scaling) is the model's business, not this folder's.
 //!
 //! ```text
 //! file ─► index (summary, or scan) ─► spans of an episode ─► messages ─► cdr, image ─► Recording ─► align ─► Episode
@@ -24,6 +24,7 @@ mod report;
 mod scan;
 mod schema;
 mod split;
+mod store;
 mod streams;
 mod summary;
 mod topics;
@@ -33,5 +34,6 @@ pub use align::align;
 pub use dataset::Dataset;
 pub use error::DataError;
 pub use report::{FileReport, LeftOut, TopicReport};
+pub use store::{Episodes, Store};
 pub use topics::{Role, Topics};
 pub use write::DatasetWriter;

@@ -78,21 +78,6 @@ fn mse(predicted: &[f32], truth: &[u8]) -> f64 {
     sum / truth.len() as f64
 }
 
-/// The mean frame of some episodes, in [0, 1].
-pub fn mean_frame<'a>(episodes: impl Iterator<Item = &'a Episode>) -> Vec<f32> {
-    let (mut count, mut sum): (u64, Vec<u64>) = (0, Vec::new());
-    for frame in episodes.flat_map(|episode| &episode.frames) {
-        sum.resize(frame.pixels.len(), 0);
-        count += 1;
-        for (sum, &pixel) in sum.iter_mut().zip(&frame.pixels) {
-            *sum += u64::from(pixel);
-        }
-    }
-    sum.into_iter()
-        .map(|sum| (sum as f64 / count.max(1) as f64 / 255.0) as f32)
-        .collect()
-}
-
 /// PSNR in dB at one horizon, averaged over episodes, and how far the model is ahead, paired over episodes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Row {

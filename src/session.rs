@@ -17,6 +17,7 @@ pub mod keymap;
 pub mod keys;
 pub mod playback;
 pub mod predict;
+pub mod renew;
 pub mod settings;
 pub mod snapshot;
 pub mod state;
@@ -241,10 +242,11 @@ impl Session {
         self.message = Some(Message { error: true, text });
     }
 
-    /// Takes what the worker has left; true if there was anything of use.
+    /// Takes newer models, and what the worker has left; true if there was anything of use.
     fn collect(&mut self) -> bool {
+        let renewed = self.take_renewed();
         let answer = self.shared.answers.take();
-        answer.is_some_and(|answer| self.take_in(answer))
+        answer.is_some_and(|answer| self.take_in(answer)) || renewed
     }
 
     /// Drops an answer to an earlier request; else does what waited for its episode.

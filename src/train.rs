@@ -4,25 +4,33 @@
 //! update are drawn from the seed and its number. So a run that was stopped goes on exactly where it was.
 
 pub mod batch;
+pub mod loader;
 pub mod masks;
+pub mod metrics;
 pub mod schedule;
 pub mod state;
 pub mod statistics;
 pub mod step;
 pub mod tensorboard;
+pub mod totals;
 pub mod validate;
 
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
 use self::batch::{Batch, Draws};
+use self::loader::{AHEAD, Loader};
+use self::metrics::Meter;
 use self::schedule::Phase;
 use self::state::State;
 use self::step::Losses;
 use self::validate::Validation;
+use crate::data::{DataError, Episodes};
 use crate::episode::Episode;
 use crate::model::Model;
 use crate::model::checkpoint::{CheckpointError, first_line};
@@ -40,23 +48,33 @@ pub enum TrainError {
     /// A tensor operation failed.
     #[error("computing: {0}")]
     Tensor(String),
-    /// A loss or a gradient was no number.
+    /// An episode could not be had again.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A loss, a gradient or a weight was no number. The run folder keeps the last checkpoint from before it.
     #[error(
-        "{what} of update {update} is not finite; its episodes: {}; leave out the odd one among them, or lower \
-         `training.learning_rate` in a --config",
-        episodes.join(", ")
+        "update {update}: {what} is not finite{}; the run folder has the last good checkpoint: leave out the odd episode, or \
+         lower `training.learning_rate` in its config.toml, and go on with --resume",
+        among(episodes)
     )]
     NotFinite {
         /// Which update.
         update: u64,
-        /// The loss, or which network's gradient.
+        /// The loss, or of which network the gradient or a weight.
         what: String,
         /// The episodes of its batch.
         episodes: Vec<String>,
     },
-    /// The run folder cannot be used.
-    #[error("{0}")]
-    Run(String),
+    /// The thread that prepares batches could not be started, or has died.
+    #[error("preparing batches: {0}")]
+    Loader(String),
+}
+
+fn among(episodes: &[String]) -> String {
+    if episodes.is_empty() {
+        return String::new();
+    }
+    format!(" (episodes {})", episodes.join(", "))
 }
 
 impl From<candle_core::Error> for TrainError {
@@ -69,11 +87,13 @@ impl From<candle_core::Error> for TrainError {
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
     /// Fitted on.
-    pub train: &'a [Episode],
+    pub train: Episodes<'a>,
     /// Scored after each epoch.
-    pub val: &'a [Episode],
+    pub val: Episodes<'a>,
     /// Where checkpoints and metrics go.
     pub folder: &'a Path,
+    /// Time between two checkpoints.
+    pub checkpoint_every: Duration,
     /// Set from outside to stop after the current update.
     pub stop: &'a AtomicBool,
 }
@@ -104,21 +124,61 @@ pub enum Outcome {
     Stopped,
 }
 
-/// Time between two checkpoints.
-const CHECKPOINT_EVERY: Duration = Duration::from_mins(3);
+/// A batch, and the names of its episodes.
+type Loaded = Result<(Batch, Vec<String>), TrainError>;
 
 /// Trains `model` from `state` until the budget is used up or it is stopped; leaves a checkpoint either way.
 pub fn run(
     model: &Model,
     state: &mut State,
     run: Run,
+    report: impl FnMut(&Progress),
+) -> Result<Outcome, TrainError> {
+    let config = &model.config;
+    let epoch_updates = epoch_updates(model, run);
+    let prepare = move |draws: Draws| -> Loaded {
+        let chosen = batch::choose(
+            run.train.len(),
+            config.training.batch,
+            epoch_updates,
+            draws.seed,
+            draws.update,
+        );
+        let episodes = chosen
+            .iter()
+            .map(|&i| run.train.get(i))
+            .collect::<Result<Vec<Arc<Episode>>, _>>()?;
+        let episodes: Vec<&Episode> = episodes.iter().map(AsRef::as_ref).collect();
+        let names = chosen.iter().map(|&i| run.train.id(i).to_owned());
+        let batch = Batch::new(config, &episodes, Some(draws))?;
+        Ok((batch, names.collect()))
+    };
+    thread::scope(|scope| {
+        let loader =
+            Loader::start(scope, prepare).map_err(|error| TrainError::Loader(error.to_string()))?;
+        drive(model, state, run, &loader, report)
+    })
+}
+
+fn epoch_updates(model: &Model, run: Run) -> u64 {
+    (run.train.len() / model.config.training.batch).max(1) as u64
+}
+
+/// The loop: one update a turn.
+fn drive(
+    model: &Model,
+    state: &mut State,
+    run: Run,
+    loader: &Loader<Draws, Loaded>,
     mut report: impl FnMut(&Progress),
 ) -> Result<Outcome, TrainError> {
     let training = &model.config.training;
-    let (seed, budget) = (state.origin.seed, state.origin.budget);
-    let epoch_updates = (run.train.len() / training.batch).max(1) as u64;
+    let budget = state.origin.budget;
+    let epoch_updates = epoch_updates(model, run);
+    let mut ordered = state.update;
     let mut running: Option<Losses> = None;
-    let mut last_save = Instant::now();
+    let mut meter = Meter::default();
+    let mut saved: Option<Instant> = None;
     loop {
         let fraction = budget.fraction(state.update, epoch_updates, state.elapsed);
         if fraction >= 1.0 || run.stop.load(Ordering::Relaxed) {
@@ -130,66 +190,83 @@ pub fn run(
             });
         }
         let started = Instant::now();
-        let chosen = batch::choose(
-            run.train.len(),
-            training.batch,
-            epoch_updates,
-            seed,
-            state.update,
-        );
-        let episodes: Vec<&Episode> = chosen.into_iter().map(|i| &run.train[i]).collect();
+        while ordered <= state.update + AHEAD as u64 {
+            let ahead = budget.fraction(ordered, epoch_updates, state.elapsed);
+            loader.order(Draws {
+                seed: state.origin.seed,
+                update: ordered,
+                segment: Phase::of(training, ordered, epoch_updates, ahead).segment,
+            });
+            ordered += 1;
+        }
+        let (loaded, waited) = loader
+            .next()
+            .ok_or_else(|| TrainError::Loader("the thread has ended".to_owned()))?;
+        let (batch, episodes) = loaded?;
         let phase = Phase::of(training, state.update, epoch_updates, fraction);
-        let draws = Draws {
-            seed,
-            update: state.update,
-            segment: phase.segment,
-        };
-        let batch = Batch::new(&model.config, &episodes, Some(draws))?;
-        if state.update > 0 {
-            let before = Phase::of(training, state.update - 1, epoch_updates, fraction);
+        if let Some(before) = state.update.checked_sub(1) {
+            let before = Phase::of(training, before, epoch_updates, fraction);
             if before.stage != phase.stage {
                 // Each stage has an optimiser of its own.
                 state.moments.clear();
             }
         }
         let gradients = step::gradients(model, &batch, &phase)?;
+        let mut stepping = started.elapsed() - waited;
         if let Some(what) = gradients.not_finite() {
-            let episodes = episodes
-                .iter()
-                .map(|episode| episode.meta.id.clone())
-                .collect();
             return Err(TrainError::NotFinite {
                 update: state.update,
                 what,
                 episodes,
             });
         }
+        // These weights have just shown that they are good, which nobody knows of those after the update. The first
+        // checkpoint is there at once, to be looked at and to resume from.
+        if saved.is_none_or(|at| at.elapsed() >= run.checkpoint_every) {
+            state.save(model, run.folder)?;
+            saved = Some(Instant::now());
+        }
+        let applying = Instant::now();
         gradients.apply(model, &mut state.moments, &phase)?;
-        let losses = gradients.losses;
+        stepping += applying.elapsed();
+        meter.add(&gradients, stepping, waited);
         state.update += 1;
-        let mean = running.map_or(losses, |running| running.towards(losses, 0.05));
-        running = Some(mean);
-        let validation = if state.update.is_multiple_of(epoch_updates) {
-            Some(validate::validate(model, run.val)?)
-        } else {
-            None
-        };
+        let losses = running.map_or(gradients.losses, |running| {
+            running.towards(gradients.losses, 0.05)
+        });
+        running = Some(losses);
+        let mut validation = None;
+        if state.update.is_multiple_of(epoch_updates) {
+            let scores = validate::validate(model, run.val)?;
+            if !scores.losses.is_finite() {
+                return Err(TrainError::NotFinite {
+                    update: state.update - 1,
+                    what: "the validation loss after it".to_owned(),
+                    episodes,
+                });
+            }
+            validation = Some(scores);
+        }
         state.elapsed += started.elapsed();
-        let progress = Progress {
+        if let Some(scores) = &validation {
+            let line = metrics::Line {
+                update: state.update,
+                epoch: state.update / epoch_updates,
+                elapsed_secs: state.elapsed.as_secs_f64(),
+                learning_rate: phase.rate,
+                train: losses,
+                meter: meter.take(),
+                val: scores.clone(),
+            };
+            metrics::log(run.folder, &line)?;
+        }
+        report(&Progress {
             update: state.update,
             epoch_updates,
             fraction: budget.fraction(state.update, epoch_updates, state.elapsed),
             elapsed: state.elapsed,
-            losses: mean,
+            losses,
             validation,
-        };
-        if progress.validation.is_some() {
-            state::append_metrics(run.folder, &progress, phase.rate)?;
-        }
-        if last_save.elapsed() > CHECKPOINT_EVERY {
-            state.save(model, run.folder)?;
-            last_save = Instant::now();
-        }
-        report(&progress);
+        });
     }
 }

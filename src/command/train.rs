@@ -6,6 +6,7 @@ mod show;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
+use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
 use candle_core::Device;
@@ -18,8 +19,9 @@ use crate::model::Model;
 use crate::model::checkpoint;
 use crate::model::config::Config;
 use crate::train::schedule::Budget;
-use crate::train::state::{self, Origin, STATE, State};
-use crate::train::{self, Outcome, Run, statistics};
+use crate::train::state::{Origin, STATE, State};
+use crate::train::totals::Totals;
+use crate::train::{self, Outcome, Run, metrics, statistics};
 
 /// Runs it.
 pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
@@ -51,21 +53,27 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
             }),
         },
     };
-    let Some(sets) = Sets::load(&dataset, config.layout(), origin.seed, &stop) else {
-        bail!("stopped before training began");
-    };
-    if sets.train.len() < config.training.batch {
+    std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
+    let sets = Sets::load(
+        &dataset,
+        config.layout(),
+        origin.seed,
+        args.memory,
+        &args.out,
+        &stop,
+    )?;
+    if sets.train().len() < config.training.batch {
         bail!(
             "{} has {} episodes to train on, a batch needs {}; record more, or lower `training.batch` in a --config",
             args.data.display(),
-            sets.train.len(),
+            sets.train().len(),
             config.training.batch
         );
     }
     eprintln!("{}: {sets}", dataset.name());
-    statistics::complete(&mut config, &sets.train);
+    let totals = Totals::of(sets.train())?;
+    statistics::complete(&mut config, &totals);
     let model = Model::new(config, origin.seed, &Device::Cpu)?;
-    std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
     let mut state = match resumed {
         Some(_) => State::load(&model, &args.out)?,
         None => State::new(origin.clone()),
@@ -73,12 +81,13 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     state.origin = origin;
     // A probe belongs to the weights it was fitted on, and those are about to change.
     finish::remove(&args.out)?;
-    state::forget_metrics_after(&args.out, state.update)?;
+    metrics::forget_after(&args.out, state.update)?;
     let bar = show::bar();
     let run = Run {
-        train: &sets.train,
-        val: &sets.val,
+        train: sets.train(),
+        val: sets.val(),
         folder: &args.out,
+        checkpoint_every: Duration::from_secs_f64(args.checkpoint_minutes * 60.0),
         stop: &stop,
     };
     let outcome = train::run(&model, &mut state, run, |progress| {
@@ -87,7 +96,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     bar.finish_and_clear();
     if state.update > 0 {
         eprintln!("saved {}; fitting the position probe", args.out.display());
-        finish::write(&model, &sets, &state, &dataset, &args.out)?;
+        finish::write(&model, &sets, &totals, &state, &dataset, &args.out)?;
     }
     match outcome {
         Outcome::Finished => eprintln!("trained: {}", args.out.display()),

@@ -1,5 +1,7 @@
 //! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
 
+mod follow;
+
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
 use std::time::Duration;
@@ -9,17 +11,17 @@ use crossterm::terminal::size as terminal_size;
 use ratatui::layout::Size;
 use ratatui_image::picker::ProtocolType;
 
+use self::follow::{Follower, Watched};
 use super::{sample, say};
 use crate::cli::{ImageProtocol, ViewArgs};
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
-use crate::model::checkpoint;
+use crate::model::checkpoint::{self, CONFIG};
 use crate::model::observation::suits;
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::keys::{Key, parse_script};
 use crate::session::predict::Predictor;
-use crate::session::trained::Trained;
 use crate::tui::app::{App, Flow};
 use crate::tui::face::Face;
 use crate::tui::print;
@@ -47,7 +49,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         depth: depth(in_terminal),
         ..Face::default()
     };
-    let mut app = App::new(open(&args)?, face, Size::new(size.0, size.1));
+    let (session, watched) = open(&args)?;
+    let mut app = App::new(session, face, Size::new(size.0, size.1));
     if let Some(state) = args.state {
         app.session.apply(Command::Restore(state));
     }
@@ -58,6 +61,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         wait(&mut app)?;
         return say(&print(&app.session.snapshot(), &app.face, size));
     }
+    let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
+    let _follower = follower.context("starting a thread to watch the models")?;
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
         Ended::Quit => Ok(()),
         Ended::Signal(signal) => {
@@ -67,8 +72,9 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data.
-fn open(args: &ViewArgs) -> anyhow::Result<Session> {
+/// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data. The
+/// folders that training runs write to are to be watched.
+fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
     let path = sample::data(args.data.as_ref())?;
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
     let folders = if args.model.is_empty() {
@@ -77,16 +83,17 @@ fn open(args: &ViewArgs) -> anyhow::Result<Session> {
         args.model.clone()
     };
     let mut models: Vec<Box<dyn Predictor>> = Vec::new();
+    let mut watched = Vec::new();
     for folder in folders {
-        let (model, probe) = checkpoint::load(&folder)?;
+        watched.extend(Watched::new(models.len(), &folder));
+        models.push(follow::open(&folder)?);
+        let config = checkpoint::load_config(&folder.join(CONFIG))?;
         // One that cannot be read says so when it is shown; the others still open.
-        if let Ok(first) = dataset.load(0, model.config.layout()) {
-            suits(&model.config, &first).with_context(|| path.display().to_string())?;
+        if let Ok(first) = dataset.load(0, config.layout()) {
+            suits(&config, &first).with_context(|| path.display().to_string())?;
         }
-        let source = folder.display().to_string();
-        models.push(Box::new(Trained::new(model, probe, source)?));
     }
-    Ok(Session::new(Arc::new(dataset), models))
+    Ok((Session::new(Arc::new(dataset), models), watched))
 }
 
 /// Presses the keys one after the other, each once what the one before it asked for has been computed.

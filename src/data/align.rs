@@ -123,7 +123,7 @@ fn since(origin: i64, stamp: i64) -> f64 {
     stamp.saturating_sub(origin) as f64
 }
 
-/// What was odd: what the recording says already, then each stream's gaps and backward stamps.
+/// What was odd: what the recording says already, then each stream's gaps, backward stamps and values that are none.
 fn flags(recording: &Recording, topics: &Topics, steps: (i64, i64)) -> Vec<Flag> {
     fn stamps<const N: usize>(track: &Track<N>) -> &[i64] {
         &track.stamps_nanos
@@ -141,6 +141,20 @@ fn flags(recording: &Recording, topics: &Topics, steps: (i64, i64)) -> Vec<Flag>
         // No command follows the last image, so only what is sensed must last until then.
         let cover = (role != Role::Control).then_some(steps);
         irregular::find(topics.topic(role), stamps, cover, &mut flags);
+    }
+    let broken = [
+        (Role::Haptic, irregular::not_finite(&recording.wrench)),
+        (Role::EePose, irregular::not_finite(&recording.ee_position)),
+        (Role::EeTwist, irregular::not_finite(&recording.ee_velocity)),
+        (Role::Control, irregular::not_finite(&recording.control)),
+        (Role::Object, irregular::not_finite(&recording.object)),
+    ];
+    for (role, stamp) in broken {
+        flags.extend(stamp.map(|stamp_nanos| Flag {
+            topic: topics.topic(role).to_owned(),
+            stamp_nanos,
+            what: "a value that is not a finite number".to_owned(),
+        }));
     }
     flags
 }

@@ -1,7 +1,7 @@
 //! A checkpoint: a folder with `config.toml`, `weights.safetensors`, `probe.safetensors` and `report.json`.
 
 use std::collections::HashMap;
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use candle_core::{DType, Device, Tensor};
@@ -62,6 +62,10 @@ pub fn first_line(error: &candle_core::Error) -> String {
 pub const CONFIG: &str = "config.toml";
 /// The weights' file name.
 pub const WEIGHTS: &str = "weights.safetensors";
+/// Key in the weights' header: the update of its run that they are of.
+const UPDATE: &str = "update";
+/// A header is no longer than this.
+const MOST_HEADER: u64 = 1 << 20;
 /// The position probe's file name.
 pub const PROBE: &str = "probe.safetensors";
 /// The mean training frame's file name: the predictor that always says it stands in every table.
@@ -116,8 +120,13 @@ fn what_is_wrong(text: &str, error: &toml::de::Error) -> String {
     }
 }
 
-/// Writes the config and the weights, as `dtype` numbers, into `folder`.
-pub fn save(model: &Model, folder: &Path, dtype: DType) -> Result<(), CheckpointError> {
+/// Writes the config and the weights, as `dtype` numbers, into `folder`; `update` says of which update of a run.
+pub fn save(
+    model: &Model,
+    folder: &Path,
+    dtype: DType,
+    update: Option<u64>,
+) -> Result<(), CheckpointError> {
     std::fs::create_dir_all(folder).map_err(|cause| CheckpointError::File {
         path: folder.to_owned(),
         cause,
@@ -143,17 +152,40 @@ pub fn save(model: &Model, folder: &Path, dtype: DType) -> Result<(), Checkpoint
         what,
     };
     let tensors = tensors().map_err(|error| refuse(first_line(&error)))?;
-    write_tensors(&path, tensors)
+    let about = update.map(|update| HashMap::from([(UPDATE.to_owned(), update.to_string())]));
+    write_with(&path, tensors, about)
 }
 
 /// Writes named tensors as safetensors, atomically.
 pub fn write_tensors(path: &Path, tensors: Vec<(String, Tensor)>) -> Result<(), CheckpointError> {
+    write_with(path, tensors, None)
+}
+
+/// The same, with what is said of them in the header: one key at most, for their order there is random.
+fn write_with(
+    path: &Path,
+    tensors: Vec<(String, Tensor)>,
+    about: Option<HashMap<String, String>>,
+) -> Result<(), CheckpointError> {
     let bytes =
-        safetensors::serialize(tensors, None).map_err(|error| CheckpointError::Weights {
+        safetensors::serialize(tensors, about).map_err(|error| CheckpointError::Weights {
             path: path.to_owned(),
             what: error.to_string(),
         })?;
     write_atomic(path, &bytes)
+}
+
+/// The update of its run that the weights in `folder` are of; none where they do not say. Reads their header only.
+pub fn update_of(folder: &Path) -> Option<u64> {
+    let mut file = std::fs::File::open(folder.join(WEIGHTS)).ok()?;
+    let mut length = [0; 8];
+    file.read_exact(&mut length).ok()?;
+    let mut header = Vec::new();
+    file.take(u64::from_le_bytes(length).min(MOST_HEADER))
+        .read_to_end(&mut header)
+        .ok()?;
+    let header: serde_json::Value = serde_json::from_slice(&header).ok()?;
+    header["__metadata__"][UPDATE].as_str()?.parse().ok()
 }
 
 /// Reads named tensors.

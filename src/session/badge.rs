@@ -91,6 +91,7 @@ mod tests {
         ModelInfo {
             name: "vhp".to_owned(),
             source: String::new(),
+            update: None,
             experts: vec![Expert::Vision, Expert::Joint],
             latent: 2,
             frame_stack: 1,

@@ -220,6 +220,7 @@ mod tests {
         ModelInfo {
             name: "m".to_owned(),
             source: String::new(),
+            update: None,
             experts: experts.to_vec(),
             latent: 2,
             frame_stack: 1,

@@ -68,6 +68,8 @@ pub struct ModelInfo {
     pub name: String,
     /// Where it came from, for the status line.
     pub source: String,
+    /// The update of its training run that it is of, where that is known.
+    pub update: Option<u64>,
     /// Sensor experts in the order of the digits.
     pub experts: Vec<Expert>,
     /// Z.

@@ -7,6 +7,7 @@
 
 mod faults;
 mod random;
+mod renewing;
 mod switching;
 
 use super::fake::{FakePredictor, FakeSource};

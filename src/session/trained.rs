@@ -24,12 +24,19 @@ fn refused(error: impl Display) -> PredictError {
 }
 
 impl Trained {
-    /// Takes over `model`; `source` says in the status line where it came from.
-    pub fn new(model: Model, probe: Option<Probe>, source: String) -> Result<Self, PredictError> {
+    /// Takes over `model`; `source` says in the status line where it came from, `update` of which update of its
+    /// training it is.
+    pub fn new(
+        model: Model,
+        probe: Option<Probe>,
+        source: String,
+        update: Option<u64>,
+    ) -> Result<Self, PredictError> {
         let config = &model.config;
         let info = ModelInfo {
             name: config.name.clone(),
             source,
+            update,
             experts: config.experts.clone(),
             latent: config.latent,
             frame_stack: config.frame_stack,

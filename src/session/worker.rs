@@ -11,6 +11,8 @@ mod opened;
 mod pictured;
 
 use std::any::Any;
+use std::cell::Cell;
+use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
@@ -97,6 +99,20 @@ pub struct Shared {
     pub answers: Mailbox<Answer>,
     /// Wakes the face.
     pub waker: Mutex<Option<Waker>>,
+    /// To the worker, before its next request: models that take the place of others.
+    pub successors: Mutex<BTreeMap<usize, Box<dyn Predictor>>>,
+    /// To the session, from whoever watches a model for a newer one, or why it cannot be had.
+    pub renewed: Mutex<BTreeMap<usize, Result<Box<dyn Predictor>, String>>>,
+}
+
+impl Shared {
+    /// Has the face look at what is new.
+    pub fn wake(&self) {
+        let waker = self.waker.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(wake) = waker.as_ref() {
+            wake();
+        }
+    }
 }
 
 /// Starts the thread; it ends when the mailbox of requests is closed.
@@ -112,6 +128,7 @@ pub fn spawn(
                 source,
                 predictors,
                 memo: Memo::default(),
+                shown: Cell::default(),
                 shared: Arc::clone(&shared),
             };
             while let Some(request) = shared.requests.wait() {
@@ -144,11 +161,14 @@ struct Worker {
     source: Arc<dyn EpisodeSource>,
     predictors: Vec<Box<dyn Predictor>>,
     memo: Memo,
+    /// What was last published.
+    shown: Cell<Option<Target>>,
     shared: Arc<Shared>,
 }
 
 impl Worker {
     fn serve(&mut self, request: &Request) {
+        self.take_successors();
         let mut answer = Answer::new(request);
         let work = AssertUnwindSafe(|| self.compute(request, &mut answer));
         let fault = match catch_unwind(work) {
@@ -167,6 +187,21 @@ impl Worker {
         answer.fault = fault;
         answer.done = true;
         self.publish(&answer);
+    }
+
+    /// Nothing that a model has said holds for the one that takes its place.
+    fn take_successors(&mut self) {
+        let mut successors = self
+            .shared
+            .successors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        for (model, predictor) in std::mem::take(&mut *successors) {
+            if let Some(slot) = self.predictors.get_mut(model) {
+                *slot = predictor;
+                self.memo.forget(model);
+            }
+        }
     }
 
     fn compute(&mut self, request: &Request, answer: &mut Answer) -> Result<(), Stop> {
@@ -199,9 +234,9 @@ impl Worker {
                 info.name
             )));
         }
-        // After a switch the face keeps what it shows until there are new beliefs; an episode that is yet to be
-        // encoded shows its recording first.
-        if !self.memo.is_encoded(target) {
+        // After a switch or a newer model the face keeps what it shows until there are new beliefs; an episode that is
+        // yet to be encoded shows its recording first.
+        if self.shown.get() != Some(target) && !self.memo.is_encoded(target) {
             self.publish(answer);
         }
         self.check()?;
@@ -275,15 +310,9 @@ impl Worker {
     }
 
     fn publish(&self, answer: &Answer) {
+        self.shown.set(Some(answer.target));
         self.shared.answers.put(answer.clone());
-        let waker = self
-            .shared
-            .waker
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        if let Some(wake) = waker.as_ref() {
-            wake();
-        }
+        self.shared.wake();
     }
 }
 

@@ -5,7 +5,6 @@ use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rand_distr::StandardNormal;
-use rayon::prelude::*;
 
 use super::{TrainError, masks};
 use crate::episode::Episode;
@@ -95,14 +94,14 @@ fn draw_sets(config: &Config, beliefs: usize, rng: &mut impl Rng) -> Vec<ExpertS
 
 impl Batch {
     /// A batch with the noise, masks and segments of an update; without `draws`, whole, on the mean path and with every
-    /// expert. Episodes must be of one length.
+    /// expert. Episodes must be of one length. Runs on one thread, the loader's, and leaves the others to the step.
     pub fn new(
         config: &Config,
         episodes: &[&Episode],
         draws: Option<Draws>,
     ) -> Result<Self, TrainError> {
         let mut observed: Vec<Observations> = episodes
-            .par_iter()
+            .iter()
             .map(|episode| observe(config, episode))
             .collect::<Result<_, _>>()?;
         let mut rng = draws.map(|draws| generator(draws.seed, 2, draws.update));
@@ -122,6 +121,12 @@ impl Batch {
             noise.fill_with(|| rng.sample(StandardNormal));
             for episode in sets.chunks_exact_mut(beliefs) {
                 episode.copy_from_slice(&draw_sets(config, beliefs, rng));
+            }
+            // What nothing is sensed of is a rollout, and a rollout goes along the means.
+            for (noise, set) in noise.chunks_exact_mut(config.latent).zip(&sets) {
+                if set.0 == 0 {
+                    noise.fill(0.0);
+                }
             }
             decoded = draw_decoded(count, beliefs, config.training.decoded, rng);
         }

@@ -1,23 +1,20 @@
 //! A run that can be put down and taken up again: weights, moments and counters in one file, written atomically.
 
 use std::collections::{BTreeMap, HashMap};
-use std::io::Write;
 use std::path::Path;
 use std::time::Duration;
 
 use candle_core::{DType, Device, Tensor};
 use serde::{Deserialize, Serialize};
 
+use super::TrainError;
 use super::schedule::Budget;
-use super::{Progress, TrainError};
 use crate::model::Model;
 use crate::model::checkpoint::{self, CheckpointError};
 use crate::model::kernel::adam::Moments;
 
 /// The file that a run is resumed from.
 pub const STATE: &str = "state.safetensors";
-/// The file that metrics are appended to, one JSON object a line.
-pub const METRICS: &str = "metrics.jsonl";
 
 /// What a run was started with, and goes on with.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -93,10 +90,21 @@ impl State {
         }
     }
 
-    /// Writes the state, and the weights as a checkpoint that can be looked at: in half precision, which costs a
-    /// hundredth of a decibel at most. The state keeps every bit.
+    /// Writes the state, and the weights as a checkpoint that can be looked at while the run goes on: in half
+    /// precision, which costs a hundredth of a decibel at most. The state keeps every bit. Each file is replaced in
+    /// one go, and none by numbers that are not finite.
     pub fn save(&self, model: &Model, folder: &Path) -> Result<(), TrainError> {
-        checkpoint::save(model, folder, DType::F16)?;
+        for network in model.networks() {
+            let theta = network.theta().to_vec1::<f32>()?;
+            if !theta.iter().all(|x| x.is_finite()) {
+                return Err(TrainError::NotFinite {
+                    what: format!("a weight of `{}`", network.name),
+                    update: self.update,
+                    episodes: Vec::new(),
+                });
+            }
+        }
+        checkpoint::save(model, folder, DType::F16, Some(self.update))?;
         let mut tensors = Vec::new();
         for network in model.networks() {
             tensors.push((
@@ -177,40 +185,4 @@ impl State {
             moments,
         })
     }
-}
-
-/// Appends one line of metrics.
-pub fn append_metrics(folder: &Path, progress: &Progress, rate: f64) -> Result<(), TrainError> {
-    let path = folder.join(METRICS);
-    let line = serde_json::json!({
-        "update": progress.update,
-        "epoch": progress.update / progress.epoch_updates,
-        "elapsed_secs": progress.elapsed.as_secs_f64(),
-        "learning_rate": rate,
-        "train": progress.losses,
-        "val": progress.validation,
-    });
-    std::fs::OpenOptions::new()
-        .create(true)
-        .append(true)
-        .open(&path)
-        .and_then(|mut file| writeln!(file, "{line}"))
-        .map_err(|cause| CheckpointError::File { path, cause }.into())
-}
-
-/// Drops the lines of metrics past `update`: a run that was killed had gone further than its last checkpoint.
-pub fn forget_metrics_after(folder: &Path, update: u64) -> Result<(), TrainError> {
-    #[derive(Deserialize)]
-    struct Line {
-        update: u64,
-    }
-    let path = folder.join(METRICS);
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        return Ok(());
-    };
-    let kept = text
-        .lines()
-        .filter(|line| serde_json::from_str::<Line>(line).is_ok_and(|line| line.update <= update));
-    let kept: String = kept.flat_map(|line| [line, "\n"]).collect();
-    Ok(checkpoint::write_atomic(&path, kept.as_bytes())?)
 }

@@ -6,16 +6,20 @@ use super::TrainError;
 use super::batch::Batch;
 use super::schedule::Phase;
 use super::step::{self, Losses};
+use crate::data::Episodes;
 use crate::episode::Episode;
 use crate::eval::{self, Protocol};
+use crate::measure::frame::psnr_db_from_mse;
 use crate::model::Model;
 use crate::model::inspect::Inspector;
 
 /// Scores on `val`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Validation {
     /// Means over all beliefs, on the mean path with every expert.
     pub losses: Losses,
+    /// What each latent adds to the KL of the posterior against the prior, in nats.
+    pub kl_per_latent: Vec<f64>,
     /// Open-loop PSNR in dB at each horizon, averaged over episodes.
     pub psnr_db: Vec<f64>,
 }
@@ -24,43 +28,47 @@ pub struct Validation {
 const EPISODES: usize = 64;
 
 /// Scores `model` on the first episodes of `val`.
-pub fn validate(model: &Model, val: &[Episode]) -> Result<Validation, TrainError> {
-    let val: Vec<&Episode> = val.iter().take(EPISODES).collect();
-    if val.is_empty() {
-        return Ok(Validation {
-            losses: Losses::default(),
-            psnr_db: Vec::new(),
-        });
-    }
-    // In batches, so that memory does not grow with the length of episodes.
+pub fn validate(model: &Model, val: Episodes) -> Result<Validation, TrainError> {
+    let val = val.first(EPISODES);
+    let inspector = Inspector::new(model)?;
     let phase = Phase::of(&model.config.training, 0, 1, 1.0);
-    let mut losses = Losses::default();
-    for (i, part) in val.chunks(model.config.training.batch).enumerate() {
-        let of_part = step::loss(
+    let mut validation = Validation::default();
+    let mut seen = 0;
+    // In batches, so that memory does not grow with the number of episodes.
+    while seen < val.len() {
+        let end = val.len().min(seen + model.config.training.batch);
+        let part = (seen..end)
+            .map(|i| val.get(i))
+            .collect::<Result<Vec<_>, _>>()?;
+        let part: Vec<&Episode> = part.iter().map(AsRef::as_ref).collect();
+        let terms = step::loss(
             model,
-            &Batch::new(&model.config, part, None)?,
+            &Batch::new(&model.config, &part, None)?,
             &phase,
             false,
         )?;
-        let seen = i * model.config.training.batch;
-        losses = losses.towards(
-            of_part.losses,
-            part.len() as f32 / (seen + part.len()) as f32,
-        );
-    }
-    let inspector = Inspector::new(model)?;
-    let protocol = Protocol::for_episode(val[0].steps());
-    let mut sums = vec![0.0; protocol.horizon];
-    for episode in &val {
-        for (sum, mse) in sums
-            .iter_mut()
-            .zip(eval::open_loop_mse(&inspector, episode, protocol)?)
-        {
-            *sum += f64::from(crate::measure::frame::psnr_db_from_mse(mse));
+        let losses = validation.losses;
+        validation.losses = losses.towards(terms.losses, part.len() as f32 / end as f32);
+        let share = part.len() as f64 / val.len() as f64;
+        let kl = terms.kl_per_latent.iter().map(|&kl| f64::from(kl) * share);
+        add(&mut validation.kl_per_latent, kl);
+        for episode in part {
+            let protocol = Protocol::for_episode(episode.steps());
+            let errors = eval::open_loop_mse(&inspector, episode, protocol)?;
+            let psnr_db = errors
+                .into_iter()
+                .map(|mse| f64::from(psnr_db_from_mse(mse)) / val.len() as f64);
+            add(&mut validation.psnr_db, psnr_db);
         }
+        seen = end;
     }
-    Ok(Validation {
-        losses,
-        psnr_db: sums.into_iter().map(|sum| sum / val.len() as f64).collect(),
-    })
+    Ok(validation)
+}
+
+/// Adds number by number.
+fn add(sums: &mut Vec<f64>, numbers: impl ExactSizeIterator<Item = f64>) {
+    sums.resize(numbers.len(), 0.0);
+    for (sum, number) in sums.iter_mut().zip(numbers) {
+        *sum += number;
+    }
 }

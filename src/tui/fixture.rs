@@ -158,6 +158,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
         models: vec![Arc::new(ModelInfo {
             name: "v-h-p".to_owned(),
             source: "sample_data/model".to_owned(),
+            update: None,
             experts: EXPERTS[..3].iter().map(|&(expert, _)| expert).collect(),
             latent: DIMS,
             frame_stack: 1,

@@ -25,6 +25,9 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             let of = format!("{}/{}", snapshot.model + 1, snapshot.models.len());
             at = text(buf, pane, at + 1, 0, &of, dim());
         }
+        if let Some(update) = model.update {
+            at = text(buf, pane, at + 2, 0, &format!("update {update}"), dim());
+        }
         let source = 2 + width(&model.source);
         if pane.width >= 110 && at + source < pane.width / 2 {
             at = text(buf, pane, at + 2, 0, &model.source, dim());

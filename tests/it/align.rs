@@ -272,3 +272,23 @@ fn a_sensor_that_starts_late_or_speaks_once_is_flagged() {
         ]
     );
 }
+
+#[test]
+fn a_value_that_is_no_number_is_flagged() {
+    let images = stamps(BASE, &[100_000_000; 5]);
+    let sensed = stamps(BASE, &[10_000_000; 50]);
+    let mut wrench = track(&sensed, |_| [0.0; 6]);
+    wrench.values[7][4] = f64::NAN;
+    let recording = Recording {
+        frames: images.iter().map(|_| frame()).collect(),
+        frame_stamps_nanos: images,
+        wrench,
+        ..Recording::default()
+    };
+    let flags = align(&recording, LAYOUT).unwrap().flags;
+    assert_eq!(flags.len(), 1, "{flags:?}");
+    assert_eq!(
+        (flags[0].topic.as_str(), flags[0].stamp_nanos),
+        ("/wrench", sensed[7])
+    );
+}

@@ -39,7 +39,7 @@ pub(crate) fn simulated(path: PathBuf, episodes: usize, options: &[&str]) -> Pat
 pub(crate) fn untrained(folder: PathBuf, config: Config) -> PathBuf {
     let side = config.frame_size as u32;
     let model = Model::new(config, 7, &Device::Cpu).unwrap();
-    checkpoint::save(&model, &folder, DType::F16).unwrap();
+    checkpoint::save(&model, &folder, DType::F16, None).unwrap();
     image::GrayImage::from_pixel(side, side, image::Luma([128]))
         .save(folder.join(MEAN_FRAME))
         .unwrap();

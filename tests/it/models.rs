@@ -15,6 +15,7 @@ use poescope::model::{Model, checkpoint};
 use poescope::sim::{Params, simulate};
 use poescope::train::batch::{Batch, Draws};
 use poescope::train::schedule::{Phase, Stage};
+use poescope::train::totals::Totals;
 use poescope::train::{statistics, step};
 
 const STEPS: usize = 6;
@@ -44,7 +45,9 @@ fn episodes(config: &Config) -> Vec<Episode> {
 /// A model of `config` and a batch for its first update.
 fn first_batch(config: &mut Config) -> (Model, Batch) {
     let episodes = episodes(config);
-    statistics::complete(config, &episodes);
+    let mut totals = Totals::default();
+    episodes.iter().for_each(|episode| totals.add(episode));
+    statistics::complete(config, &totals);
     let model = Model::new(config.clone(), 1, &Device::Cpu).unwrap();
     let draws = Draws {
         seed: 1,
@@ -95,7 +98,7 @@ fn every_model_looks_at_an_episode_and_comes_back_from_disk() {
             config.frame_stack = frame_stack;
             let (model, _) = first_batch(&mut config);
             let folder = tempfile::tempdir().unwrap();
-            checkpoint::save(&model, folder.path(), DType::F32).unwrap();
+            checkpoint::save(&model, folder.path(), DType::F32, None).unwrap();
             let (read, _) = checkpoint::load(folder.path()).unwrap();
             assert_eq!(read.config, model.config);
             let look = |model: &Model| {

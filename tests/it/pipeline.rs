@@ -39,6 +39,41 @@ fn simulate_info_train_view_eval() {
         .collect();
     assert_eq!(losses.len(), 2);
     assert!(losses.iter().all(|loss| loss.is_finite()), "{losses:?}");
+    let last: serde_json::Value = serde_json::from_str(metrics.lines().last().unwrap()).unwrap();
+    let norms = last["gradient_norm"].as_object().unwrap();
+    assert_eq!(
+        norms.len(),
+        7,
+        "an encoder and a decoder an expert, and the dynamics"
+    );
+    for norm in norms.values() {
+        let [mean, max] = ["mean", "max"].map(|key| norm[key].as_f64().unwrap());
+        assert!(0.0 < mean && mean <= max, "{norms:?}");
+    }
+    for (kl, per_latent) in [
+        (None, &last["kl_per_latent"]),
+        (
+            Some(&last["val"]["losses"]["kl"]),
+            &last["val"]["kl_per_latent"],
+        ),
+    ] {
+        let per_latent = per_latent.as_array().unwrap().iter();
+        let per_latent: Vec<f64> = per_latent.map(|kl| kl.as_f64().unwrap()).collect();
+        assert_eq!(per_latent.len(), 16);
+        assert!(per_latent.iter().all(|&kl| kl > -1e-3), "{per_latent:?}");
+        if let Some(kl) = kl {
+            let sum = per_latent.iter().sum::<f64>();
+            assert!((sum / kl.as_f64().unwrap() - 1.0).abs() < 1e-4);
+        }
+    }
+    // Batches of the second epoch were ready when they were wanted.
+    let [updates, each, waited] =
+        ["updates", "secs_per_update", "waited_secs"].map(|key| last[key].as_f64().unwrap());
+    assert!(
+        waited < 0.25 * updates * each,
+        "waited {waited} s of {}",
+        updates * each
+    );
 
     let print = |keys: &str| {
         let mut view = poescope();

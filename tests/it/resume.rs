@@ -1,22 +1,29 @@
-//! A run that was stopped goes on exactly where it was: as if it had never been.
+//! A run can be trusted: the same again to the byte, stopped, killed or not; and what is not finite ends it in time.
 #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Stdio};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use candle_core::Device;
-use poescope::data::align;
+use poescope::data::{Episodes, Store, align};
 use poescope::episode::Episode;
 use poescope::model::Model;
+use poescope::model::checkpoint::{self, CONFIG, PROBE, WEIGHTS};
 use poescope::model::config::Config;
+use poescope::model::network::Slot;
 use poescope::sim::{Params, simulate};
+use poescope::train::batch::choose;
+use poescope::train::metrics::METRICS;
 use poescope::train::schedule::Budget;
 use poescope::train::state::{Origin, STATE, State};
-use poescope::train::{Outcome, Run, run, statistics};
+use poescope::train::totals::Totals;
+use poescope::train::{Outcome, Run, TrainError, run, statistics};
+use serde_json::Value;
+use tempfile::TempDir;
 
 use crate::common::{answer, poescope, simulated, tensors};
 
@@ -45,6 +52,59 @@ fn episodes(config: &Config) -> Vec<Episode> {
         .collect()
 }
 
+/// The same episodes in memory, or with no room there.
+fn stored(episodes: &[Episode], memory: u64, folder: &Path) -> Store {
+    let mut store = Store::new(memory, folder);
+    for episode in episodes {
+        store.push(episode.clone()).unwrap();
+    }
+    store
+}
+
+const TRAIN: [usize; 8] = [0, 1, 2, 3, 4, 5, 6, 7];
+const VAL: [usize; 2] = [8, 9];
+
+/// A sitting that ends at the budget, or after update `until`; every update leaves a checkpoint.
+fn sit(
+    model: &Model,
+    state: &mut State,
+    store: &Store,
+    folder: &Path,
+    until: Option<u64>,
+) -> Result<Outcome, TrainError> {
+    let stop = AtomicBool::new(false);
+    let sitting = Run {
+        train: Episodes::new(store, &TRAIN),
+        val: Episodes::new(store, &VAL),
+        folder,
+        checkpoint_every: Duration::ZERO,
+        stop: &stop,
+    };
+    run(model, state, sitting, |progress| {
+        stop.store(until == Some(progress.update), Ordering::Relaxed);
+    })
+}
+
+/// Three epochs of two updates.
+fn origin() -> Origin {
+    Origin {
+        seed: 9,
+        budget: Budget {
+            epochs: Some(3),
+            ..Budget::default()
+        },
+        ..Origin::default()
+    }
+}
+
+fn scaled(episodes: &[Episode], folder: &Path) -> Config {
+    let mut config = planar();
+    let store = stored(episodes, u64::MAX, folder);
+    let totals = Totals::of(Episodes::new(&store, &TRAIN)).unwrap();
+    statistics::complete(&mut config, &totals);
+    config
+}
+
 /// Every trained number and moment, as bits.
 fn bits(model: &Model, state: &State) -> BTreeMap<String, Vec<u32>> {
     let flat = |numbers: &[f32]| numbers.iter().map(|x| x.to_bits()).collect();
@@ -63,97 +123,246 @@ fn bits(model: &Model, state: &State) -> BTreeMap<String, Vec<u32>> {
 
 #[test]
 fn a_stopped_run_ends_where_an_uninterrupted_one_does() {
-    let mut config = planar();
-    let episodes = episodes(&config);
-    statistics::complete(&mut config, &episodes);
-    let (train, val) = episodes.split_at(8);
-    // Three epochs of two updates; the stop falls within the second.
-    let sit = |model: &Model, state: &mut State, folder: &Path, until: Option<u64>| {
-        let stop = AtomicBool::new(false);
-        let sitting = Run {
-            train,
-            val,
-            folder,
-            stop: &stop,
-        };
-        let halt = |update| stop.store(until == Some(update), Ordering::Relaxed);
-        run(model, state, sitting, |progress| halt(progress.update)).unwrap()
-    };
-    let origin = Origin {
-        seed: 9,
-        budget: Budget {
-            epochs: Some(3),
-            ..Budget::default()
-        },
-        ..Origin::default()
-    };
+    let folder = tempfile::tempdir().unwrap();
+    let episodes = episodes(&planar());
+    let config = scaled(&episodes, folder.path());
+    let [in_memory, on_disk] = [u64::MAX, 0].map(|room| stored(&episodes, room, folder.path()));
+    assert_eq!((in_memory.spilled(), on_disk.spilled()), (0, 10));
     let new = |seed| Model::new(config.clone(), seed, &Device::Cpu).unwrap();
 
     let whole_folder = tempfile::tempdir().unwrap();
-    let (whole, mut whole_state) = (new(1), State::new(origin.clone()));
+    let (whole, mut whole_state) = (new(1), State::new(origin()));
     let before = bits(&whole, &whole_state);
-    let outcome = sit(&whole, &mut whole_state, whole_folder.path(), None);
-    assert_eq!((outcome, whole_state.update), (Outcome::Finished, 6));
+    let sat = sit(
+        &whole,
+        &mut whole_state,
+        &in_memory,
+        whole_folder.path(),
+        None,
+    );
+    assert_eq!((sat.unwrap(), whole_state.update), (Outcome::Finished, 6));
 
-    let folder = tempfile::tempdir().unwrap();
-    let (first, mut state) = (new(1), State::new(origin.clone()));
-    let outcome = sit(&first, &mut state, folder.path(), Some(3));
-    assert_eq!((outcome, state.update), (Outcome::Stopped, 3));
-    // Another process begins with other numbers, and has nothing but the file.
+    // The stop falls within the second epoch.
+    let (first, mut state) = (new(1), State::new(origin()));
+    let sat = sit(&first, &mut state, &in_memory, folder.path(), Some(3));
+    assert_eq!((sat.unwrap(), state.update), (Outcome::Stopped, 3));
+    // Another process begins with other numbers, and has nothing but the file; its data may lie elsewhere.
     let second = new(2);
     let mut state = State::load(&second, folder.path()).unwrap();
     assert_eq!(bits(&second, &state), bits(&first, &state));
-    let outcome = sit(&second, &mut state, folder.path(), None);
-    assert_eq!((outcome, state.update), (Outcome::Finished, 6));
+    let sat = sit(&second, &mut state, &on_disk, folder.path(), None);
+    assert_eq!((sat.unwrap(), state.update), (Outcome::Finished, 6));
 
     let after = bits(&whole, &whole_state);
     assert!(after == bits(&second, &state), "resumed to other numbers");
     assert!(before.iter().all(|(name, theta)| after[name] != *theta));
 }
 
-#[test]
-fn an_interrupted_command_resumes_to_the_same_checkpoint() {
-    let folder = tempfile::tempdir().unwrap();
-    let sizes = [
-        "--planar",
-        "--window",
-        "10",
-        "--rate-hz",
-        "180",
-        "--steps",
-        "6",
-    ];
-    let data = simulated(folder.path().join("pushes.mcap"), 10, &sizes);
-    let config = folder.path().join("planar.toml");
-    fs::write(&config, toml::to_string(&planar()).unwrap()).unwrap();
-    let train = |out: &Path| {
-        let mut command = poescope();
-        command.args(["train", "--epochs", "8", "--threads", "2", "--config"]);
-        command.arg(&config).arg("--data").arg(&data);
-        command.arg("--out").arg(out);
-        command
-    };
-    let [whole, cut] = ["whole", "cut"].map(|name| folder.path().join(name));
-    answer(&mut train(&whole));
-
-    let mut command = train(&cut);
-    let mut child = command.stderr(Stdio::null()).spawn().unwrap();
-    // The first epoch's line shows that it is under way.
-    let patience = Instant::now() + Duration::from_mins(1);
-    while !cut.join("metrics.jsonl").exists() && Instant::now() < patience {
-        std::thread::sleep(Duration::from_millis(2));
+/// Trains until a number is not finite: which update, what it was, among which episodes.
+fn fails(
+    model: &Model,
+    state: &mut State,
+    store: &Store,
+    folder: &Path,
+) -> (u64, String, Vec<String>) {
+    match sit(model, state, store, folder, None) {
+        Err(TrainError::NotFinite {
+            update,
+            what,
+            episodes,
+        }) => (update, what, episodes),
+        other => panic!("{other:?}"),
     }
-    let pid = child.id().to_string();
-    let mut kill = Command::new("sh");
-    kill.args(["-c", "kill -INT \"$0\"", &pid]);
+}
+
+#[test]
+fn an_episode_that_is_not_finite_is_named_and_leaves_the_checkpoint_before_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut episodes = episodes(&planar());
+    let config = scaled(&episodes, folder.path());
+    // Of the second update of the first epoch, which takes those that the first did not.
+    let poisoned = choose(TRAIN.len(), config.training.batch, 2, origin().seed, 1)[2];
+    episodes[poisoned].haptic.as_mut().unwrap()[78] = f32::NAN;
+    let store = stored(&episodes, u64::MAX, folder.path());
+    let model = Model::new(config.clone(), 1, &Device::Cpu).unwrap();
+    let mut state = State::new(origin());
+    let first = bits(&model, &state);
+    let (update, what, named) = fails(&model, &mut state, &store, folder.path());
+    assert_eq!((update, named.len()), (1, config.training.batch));
+    assert!(what.starts_with("the loss"), "{what}");
+    assert!(named.contains(&episodes[poisoned].meta.id), "{named:?}");
+    // The last weights that were seen to give a finite loss.
+    let kept = Model::blank(config, &Device::Cpu).unwrap();
+    let state = State::load(&kept, folder.path()).unwrap();
+    assert_eq!((state.update, bits(&kept, &state)), (0, first));
+}
+
+#[test]
+fn a_rate_that_is_too_high_stops_before_it_is_saved() {
+    let folder = tempfile::tempdir().unwrap();
+    let episodes = episodes(&planar());
+    let mut config = scaled(&episodes, folder.path());
+    config.training.learning_rate = 1e30;
+    let store = stored(&episodes, u64::MAX, folder.path());
+    let model = Model::new(config.clone(), 1, &Device::Cpu).unwrap();
+    let mut state = State::new(origin());
+    let first = bits(&model, &state);
+    let (update, ..) = fails(&model, &mut state, &store, folder.path());
+    assert_eq!(update, 1);
+    let kept = Model::blank(config, &Device::Cpu).unwrap();
+    let state = State::load(&kept, folder.path()).unwrap();
+    assert_eq!((state.update, bits(&kept, &state)), (0, first));
+    checkpoint::load(folder.path()).unwrap();
+}
+
+#[test]
+fn a_gradient_that_is_not_finite_reaches_neither_weights_nor_moments() {
+    let folder = tempfile::tempdir().unwrap();
+    let episodes = episodes(&planar());
+    let config = scaled(&episodes, folder.path());
+    let store = stored(&episodes, u64::MAX, folder.path());
+    let model = Model::new(config, 1, &Device::Cpu).unwrap();
+    // Weight norm makes the weight the same whatever the length of v, but its gradient goes with 1 / ‖v‖.
+    let network = &model.decoders[0].network;
+    let mut numbers: Vec<_> = network.tensors().unwrap().into_iter().rev().collect();
+    let shrunk = |slot: &Slot| {
+        let (_, tensor) = numbers.pop().unwrap();
+        let scale = if slot.name.ends_with("_v") {
+            1e-19
+        } else {
+            1.0
+        };
+        tensor.affine(scale, 0.0)?.flatten_all()?.to_vec1()
+    };
+    network.fill(shrunk).unwrap();
+    let mut state = State::new(origin());
+    let first = bits(&model, &state);
+    let (update, what, named) = fails(&model, &mut state, &store, folder.path());
+    assert_eq!((update, named.len()), (0, 4));
+    assert!(what.starts_with("the gradient of `img_dec`"), "{what}");
+    assert!(bits(&model, &state) == first && state.moments.is_empty());
+}
+
+/// Twenty episodes of a planar setup to train on, five updates an epoch, three epochs, through the program.
+struct Trial {
+    folder: TempDir,
+}
+
+impl Trial {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let sizes = "--planar --window 10 --rate-hz 180 --steps 6";
+        let sizes: Vec<&str> = sizes.split(' ').collect();
+        simulated(folder.path().join("pushes.mcap"), 22, &sizes);
+        let config = toml::to_string(&planar()).unwrap();
+        fs::write(folder.path().join("planar.toml"), config).unwrap();
+        Self { folder }
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn train(&self, name: &str, options: &[&str]) -> Command {
+        let mut command = poescope();
+        command.args(["train", "--epochs", "3", "--threads", "2", "--config"]);
+        command.arg(self.out("planar.toml"));
+        command.arg("--data").arg(self.out("pushes.mcap"));
+        command.args(options).arg("--out").arg(self.out(name));
+        command
+    }
+
+    /// Starts a run and waits until a checkpoint of `update` or a later one is there.
+    fn started(&self, name: &str, options: &[&str], update: u64) -> Child {
+        let mut child = self.train(name, options);
+        let mut child = child.stderr(Stdio::null()).spawn().unwrap();
+        let patience = Instant::now() + Duration::from_mins(1);
+        while saved_update(&self.out(name)).is_none_or(|saved| saved < update) {
+            assert!(Instant::now() < patience && child.try_wait().unwrap().is_none());
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        child
+    }
+
+    fn state(&self, name: &str) -> Vec<(String, Vec<u8>)> {
+        tensors(&self.out(name).join(STATE))
+    }
+
+    fn bytes(&self, name: &str, file: &str) -> Vec<u8> {
+        fs::read(self.out(name).join(file)).unwrap()
+    }
+
+    /// The lines of metrics but for what tells the time.
+    fn metrics(&self, name: &str) -> Vec<Value> {
+        let text = fs::read_to_string(self.out(name).join(METRICS)).unwrap();
+        let lines = text.lines().map(|line| {
+            let mut line: Value = serde_json::from_str(line).unwrap();
+            let line_object = line.as_object_mut().unwrap();
+            for timed in ["elapsed_secs", "secs_per_update", "waited_secs"] {
+                assert!(line_object.remove(timed).unwrap().is_f64());
+            }
+            line
+        });
+        lines.collect()
+    }
+}
+
+/// The update that a run's checkpoint is of; none before there is one.
+fn saved_update(run: &Path) -> Option<u64> {
+    let bytes = fs::read(run.join(STATE)).ok()?;
+    let (_, header) = safetensors::SafeTensors::read_metadata(&bytes).ok()?;
+    let counters = header.metadata().as_ref()?.get("counters")?.clone();
+    serde_json::from_str::<Value>(&counters).unwrap()["update"].as_u64()
+}
+
+#[test]
+fn runs_agree_to_the_byte_whether_they_were_interrupted_killed_or_not() {
+    let trial = Trial::new();
+    answer(&mut trial.train("whole", &[]));
+    // Once more, from the disk.
+    answer(&mut trial.train("again", &["--memory", "0"]));
+    for file in [WEIGHTS, CONFIG, PROBE] {
+        assert!(
+            trial.bytes("whole", file) == trial.bytes("again", file),
+            "{file}"
+        );
+    }
+    let metrics = trial.metrics("whole");
+    assert_eq!((metrics.len(), &metrics), (3, &trial.metrics("again")));
+
+    let often = ["--checkpoint-minutes", "0"];
+    let mut child = trial.started("interrupted", &often, 2);
+    let mut kill = Command::new("kill");
+    kill.args(["-INT", &child.id().to_string()]);
     assert!(kill.status().unwrap().success());
     assert!(child.wait().unwrap().success());
-    let stopped = tensors(&cut.join(STATE));
-    answer(train(&cut).arg("--resume"));
+    let stopped = saved_update(&trial.out("interrupted")).unwrap();
+    assert!(
+        (2..15).contains(&stopped),
+        "not interrupted in time: {stopped}"
+    );
+    answer(&mut trial.train("interrupted", &["--resume"]));
 
-    let ended = tensors(&whole.join(STATE));
-    assert!(stopped != ended, "it was not interrupted in time");
-    assert!(tensors(&cut.join(STATE)) == ended);
-    let weights = |run: &Path| tensors(&run.join("weights.safetensors"));
-    assert!(weights(&cut) == weights(&whole));
+    // Killed twice without a warning, in the midst of an update or of a checkpoint.
+    for (options, update) in [(&often[..], 2), (&[often[0], often[1], "--resume"], 7)] {
+        let mut child = trial.started("killed", options, update);
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let stopped = saved_update(&trial.out("killed")).unwrap();
+        assert!(
+            (update..15).contains(&stopped),
+            "not killed in time: {stopped}"
+        );
+        assert!(!trial.out("killed").join(PROBE).exists());
+    }
+    answer(&mut trial.train("killed", &["--resume"]));
+
+    for run in ["interrupted", "killed"] {
+        assert!(trial.state(run) == trial.state("whole"), "{run}");
+        assert!(
+            trial.bytes(run, WEIGHTS) == trial.bytes("whole", WEIGHTS),
+            "{run}"
+        );
+        assert_eq!(trial.metrics(run).len(), 3, "{run}");
+    }
 }

@@ -8,17 +8,18 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::sets::Sets;
-use crate::data::Dataset;
+use crate::data::{Dataset, Episodes};
 use crate::episode::{Episode, EpisodeSource};
-use crate::eval;
 use crate::model::Model;
 use crate::model::checkpoint::{MEAN_FRAME, PROBE, REPORT, write_atomic};
 use crate::model::inspect::Inspector;
 use crate::model::observation::observe;
 use crate::model::probe::{Positions, Probe};
 use crate::model::trace::{Alphas, GaussianTrace};
-use crate::train::state::{METRICS, State};
+use crate::train::metrics::METRICS;
+use crate::train::state::State;
 use crate::train::statistics;
+use crate::train::totals::Totals;
 use crate::train::validate::validate;
 
 /// Removes what [`write`] wrote.
@@ -39,26 +40,27 @@ pub fn remove(folder: &Path) -> anyhow::Result<()> {
 pub fn write(
     model: &Model,
     sets: &Sets,
+    totals: &Totals,
     state: &State,
     dataset: &Dataset,
     folder: &Path,
 ) -> anyhow::Result<()> {
     let probe = fit_probe(model, sets, folder)?;
-    write_mean_frame(model, sets, folder)?;
+    write_mean_frame(model, totals, folder)?;
     let config = &model.config;
     let names: Vec<&str> = config
         .streams()
         .iter()
         .map(|stream| stream.name())
         .collect();
-    let at_mean = statistics::error_at_the_mean(config, &sets.train);
+    let at_mean = statistics::error_at_the_mean(config, totals);
     let error_at_mean: Vec<Value> = names
         .iter()
         .zip(at_mean)
         .zip(&config.training.error_weights)
         .map(|((name, error), weight)| json!({ "expert": name, "error_at_mean": error, "weight": weight }))
         .collect();
-    let epoch_updates = (sets.train.len() / config.training.batch).max(1);
+    let epoch_updates = (sets.train().len() / config.training.batch).max(1);
     let report = json!({
         "poescope": env!("CARGO_PKG_VERSION"),
         "command": state.origin.command,
@@ -66,8 +68,8 @@ pub fn write(
         "parameters": model.parameters(),
         "data": dataset.name(),
         "data_hash": state.origin.data_hash,
-        "train_episodes": sets.train.len(),
-        "val_episodes": sets.val.len(),
+        "train_episodes": sets.train().len(),
+        "val_episodes": sets.val().len(),
         "left_out": sets.left_out,
         "seed": state.origin.seed,
         "threads": state.origin.threads,
@@ -75,7 +77,7 @@ pub fn write(
         "epochs": state.update as f64 / epoch_updates as f64,
         "minutes": state.elapsed.as_secs_f64() / 60.0,
         "error_terms": error_at_mean,
-        "val": validate(model, &sets.val)?,
+        "val": validate(model, sets.val())?,
         "probe": probe,
         "metrics": METRICS,
     });
@@ -87,8 +89,8 @@ pub fn write(
 /// of itself, or null where no positions were recorded.
 fn fit_probe(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<Value> {
     let inspector = Inspector::new(model)?;
-    let train = positions(&inspector, &sets.train)?;
-    let val = positions(&inspector, &sets.val)?;
+    let train = positions(&inspector, sets.train())?;
+    let val = positions(&inspector, sets.val())?;
     let (held_out, split) = if val.truth.is_empty() {
         (&train, "train")
     } else {
@@ -116,7 +118,7 @@ fn rmse_cm(probe: &Probe, positions: &Positions) -> Option<f64> {
 }
 
 /// Filtered beliefs on the mean path with every expert, and the recorded positions they should give.
-fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Result<Positions> {
+fn positions(inspector: &Inspector<&Model>, episodes: Episodes) -> anyhow::Result<Positions> {
     let config = &inspector.model().config;
     let one = |episode: &Episode| -> anyhow::Result<(GaussianTrace, Vec<[f32; 2]>)> {
         let Some(object) = &episode.object else {
@@ -132,9 +134,9 @@ fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Res
             .collect();
         Ok((beliefs.posterior, truth))
     };
-    let each: Vec<_> = episodes
-        .par_iter()
-        .map(one)
+    let each: Vec<_> = (0..episodes.len())
+        .into_par_iter()
+        .map(|i| one(&*episodes.get(i)?))
         .collect::<anyhow::Result<_>>()?;
     let mut all = Positions::default();
     all.beliefs.latent = config.latent;
@@ -146,13 +148,9 @@ fn positions(inspector: &Inspector<&Model>, episodes: &[Episode]) -> anyhow::Res
     Ok(all)
 }
 
-fn write_mean_frame(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<()> {
-    let pixels = eval::mean_frame(sets.train.iter())
-        .into_iter()
-        .map(|p| (p * 255.0).round() as u8)
-        .collect();
+fn write_mean_frame(model: &Model, totals: &Totals, folder: &Path) -> anyhow::Result<()> {
     let side = model.config.frame_size as u32;
-    let frame = image::GrayImage::from_raw(side, side, pixels)
+    let frame = image::GrayImage::from_raw(side, side, totals.mean_frame())
         .context("frames of another size than the model's")?;
     let mut png = Cursor::new(Vec::new());
     frame.write_to(&mut png, image::ImageFormat::Png)?;

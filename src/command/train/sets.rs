@@ -2,29 +2,39 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use anyhow::bail;
 use indicatif::ProgressStyle;
 
 use super::show;
-use crate::data::Dataset;
-use crate::episode::{Episode, EpisodeSource, Layout, Split};
+use crate::data::{Dataset, Episodes, Store};
+use crate::episode::{EpisodeSource, Layout, Split};
 
 /// Episodes to train on and for validation, all of one length, and why others were left out.
 pub struct Sets {
-    /// Fitted on.
-    pub train: Vec<Episode>,
-    /// Scored on.
-    pub val: Vec<Episode>,
+    store: Store,
+    train: Vec<usize>,
+    val: Vec<usize>,
     /// Name and reason of each that was left out.
     pub left_out: Vec<(String, String)>,
 }
 
 impl Sets {
     /// Reads every episode that is not of the test split; the validation split is cut by `seed` where the dataset names
-    /// none. None when stopped.
-    pub fn load(dataset: &Dataset, layout: Layout, seed: u64, stop: &AtomicBool) -> Option<Self> {
+    /// none. What is beyond `memory` bytes is set aside in `folder`. An odd recording would teach the oddity, and one
+    /// of another length does not fit a batch: they are left out.
+    pub fn load(
+        dataset: &Dataset,
+        layout: Layout,
+        seed: u64,
+        memory: u64,
+        folder: &Path,
+        stop: &AtomicBool,
+    ) -> anyhow::Result<Self> {
         let mut sets = Self {
+            store: Store::new(memory, folder),
             train: Vec::new(),
             val: Vec::new(),
             left_out: Vec::new(),
@@ -34,52 +44,70 @@ impl Sets {
         if let Ok(style) = ProgressStyle::with_template("reading {bar:30} {pos}/{len} episodes") {
             bar.set_style(style);
         }
+        let mut lengths = BTreeMap::new();
         for (index, split) in dataset.splits(seed).into_iter().enumerate() {
             if stop.load(Ordering::Relaxed) {
-                return None;
+                bail!("stopped before training began");
             }
             bar.inc(1);
-            match (split, dataset.load(index, layout)) {
-                (Split::Test, _) => {}
-                (_, Err(error)) => sets
-                    .left_out
-                    .push((dataset.metas()[index].id.clone(), error.to_string())),
-                (Split::Val, Ok(episode)) => sets.val.push(episode),
-                (Split::Train, Ok(episode)) => sets.train.push(episode),
+            if split == Split::Test {
+                continue;
+            }
+            let mut leave_out = |why| {
+                let id = dataset.metas()[index].id.clone();
+                sets.left_out.push((id, why));
+            };
+            let episode = match dataset.load(index, layout) {
+                Ok(episode) => episode,
+                Err(error) => {
+                    leave_out(error.to_string());
+                    continue;
+                }
+            };
+            if split == Split::Train {
+                *lengths.entry(episode.steps()).or_insert(0_usize) += 1;
+            }
+            if let Some(flag) = episode.flags.first() {
+                leave_out(format!("{}: {}", flag.topic, flag.what));
+                continue;
+            }
+            let stored = sets.store.push(episode)?;
+            if split == Split::Train {
+                sets.train.push(stored);
+            } else {
+                sets.val.push(stored);
             }
         }
         bar.finish_and_clear();
-        sets.leave_out_odd_ones();
-        Some(sets)
+        let usual = lengths.into_iter().max_by_key(|&(_, count)| count);
+        if let Some((usual, _)) = usual {
+            sets.keep_those_of(usual);
+        }
+        Ok(sets)
     }
 
-    /// An odd recording would teach the oddity, and one of another length does not fit a batch.
-    fn leave_out_odd_ones(&mut self) {
-        let mut lengths = BTreeMap::new();
-        for episode in &self.train {
-            *lengths.entry(episode.steps()).or_insert(0_usize) += 1;
-        }
-        let Some(usual) = lengths
-            .into_iter()
-            .max_by_key(|&(_, count)| count)
-            .map(|(length, _)| length)
-        else {
-            return;
-        };
-        let left_out = &mut self.left_out;
+    fn keep_those_of(&mut self, usual: usize) {
+        let (store, left_out) = (&self.store, &mut self.left_out);
         for set in [&mut self.train, &mut self.val] {
-            set.retain(|episode| {
-                let reason = match episode.flags.first() {
-                    Some(flag) => format!("{}: {}", flag.topic, flag.what),
-                    None if episode.steps() != usual => {
-                        format!("{} images where most have {usual}", episode.steps())
-                    }
-                    None => return true,
-                };
-                left_out.push((episode.meta.id.clone(), reason));
-                false
+            set.retain(|&index| {
+                let steps = store.steps(index);
+                if steps != usual {
+                    let why = format!("{steps} images where most have {usual}");
+                    left_out.push((store.id(index).to_owned(), why));
+                }
+                steps == usual
             });
         }
+    }
+
+    /// Fitted on.
+    pub fn train(&self) -> Episodes<'_> {
+        Episodes::new(&self.store, &self.train)
+    }
+
+    /// Scored on.
+    pub fn val(&self) -> Episodes<'_> {
+        Episodes::new(&self.store, &self.val)
     }
 }
 
@@ -93,6 +121,13 @@ impl fmt::Display for Sets {
         )?;
         if !self.left_out.is_empty() {
             write!(f, ", {} left out", self.left_out.len())?;
+        }
+        if self.store.spilled() > 0 {
+            let (spilled, all) = (self.store.spilled(), self.store.len());
+            write!(
+                f,
+                "; {spilled} of {all} do not fit into --memory and are on disk"
+            )?;
         }
         for (id, reason) in self.left_out.iter().take(3) {
             write!(f, "\n  {id}: {reason}")?;

@@ -1,6 +1,6 @@
-//! Gaps, and stamps that run backwards.
+//! Gaps, stamps that run backwards, and values that are no numbers.
 
-use crate::episode::Flag;
+use crate::episode::{Flag, Track};
 
 /// A gap is longer than so many nominal periods.
 const GAP_PERIODS: i64 = 3;
@@ -56,6 +56,13 @@ pub(super) fn find(topic: &str, stamps: &[i64], cover: Option<(i64, i64)>, flags
             flag(pair[0], format!("gap of {}", duration(length)));
         }
     }
+}
+
+/// When the first value that is not finite was measured.
+pub(super) fn not_finite<const N: usize>(track: &Track<N>) -> Option<i64> {
+    let mut samples = track.stamps_nanos.iter().zip(&track.values);
+    let broken = samples.find(|(_, value)| !value.iter().all(|x| x.is_finite()));
+    broken.map(|(&stamp, _)| stamp)
 }
 
 fn duration(nanos: i64) -> String {

@@ -31,16 +31,18 @@ impl InplaceOp2 for Towards {
         };
         let chunk = 1 << 16;
         let chunks = mean[start..end].par_chunks_mut(chunk);
-        chunks.zip(newest.par_chunks(chunk)).for_each(|(mean, newest)| {
-            vectorised(
-                #[inline(always)]
-                || {
-                    for (m, &n) in mean.iter_mut().zip(newest) {
-                        *m += self.0 * (n - *m);
-                    }
-                },
-            );
-        });
+        chunks
+            .zip(newest.par_chunks(chunk))
+            .for_each(|(mean, newest)| {
+                vectorised(
+                    #[inline(always)]
+                    || {
+                        for (m, &n) in mean.iter_mut().zip(newest) {
+                            *m += self.0 * (n - *m);
+                        }
+                    },
+                );
+            });
         Ok(())
     }
 }

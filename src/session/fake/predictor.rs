@@ -80,6 +80,7 @@ impl FakePredictor {
         let info = ModelInfo {
             name: name.to_owned(),
             source: "made up".to_owned(),
+            update: None,
             experts: experts.to_vec(),
             latent: LATENT,
             frame_stack: 1,
@@ -90,6 +91,13 @@ impl FakePredictor {
             info,
             calls: Arc::default(),
         }
+    }
+
+    /// The same, as of an update of its training.
+    #[must_use]
+    pub fn at_update(mut self, update: u64) -> Self {
+        self.info.update = Some(update);
+        self
     }
 
     /// Its counters.

@@ -25,6 +25,11 @@ impl<K: PartialEq, V> Lru<K, V> {
         self.entries.last_mut().map(|(_, value)| value)
     }
 
+    /// Drops some of the keys.
+    pub fn forget(&mut self, which: impl Fn(&K) -> bool) {
+        self.entries.retain(|(key, _)| !which(key));
+    }
+
     /// The value of a key, made where it is missing.
     pub fn get_or_try_insert<E>(
         &mut self,

@@ -127,6 +127,14 @@ impl Memo {
         }
     }
 
+    /// Drops what came from a model.
+    pub fn forget(&mut self, model: usize) {
+        self.opened.forget(|target| target.model == model);
+        self.traces.forget(|target| target.model == model);
+        self.beliefs.forget(|key| key.target.model == model);
+        self.rollouts.forget(|(key, _)| key.target.model == model);
+    }
+
     /// What the experts say of the episode.
     pub fn trace(
         &mut self,

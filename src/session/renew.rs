@@ -1,0 +1,73 @@
+//! Models that change while they are looked at: a training run leaves a newer checkpoint now and then.
+
+use std::sync::{Arc, PoisonError};
+
+use super::Session;
+use super::predict::Predictor;
+use super::worker::Shared;
+
+/// Hands newer models to a session, from another thread.
+#[derive(Clone)]
+pub struct Renewal(Arc<Shared>);
+
+impl Renewal {
+    /// Puts a newer one in the place of model `index`, or tells why it cannot be had. The face is woken, and takes it
+    /// in when it next looks; of several until then the newest counts.
+    pub fn offer(&self, index: usize, found: Result<Box<dyn Predictor>, String>) {
+        let mut renewed = self
+            .0
+            .renewed
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        renewed.insert(index, found);
+        drop(renewed);
+        self.0.wake();
+    }
+}
+
+impl Session {
+    /// For whoever watches the models.
+    pub fn renewal(&self) -> Renewal {
+        Renewal(Arc::clone(&self.shared))
+    }
+
+    /// Takes newer models in; true if there was one. Cursor, episode and switches stay as they are, and so does the
+    /// picture until the new model has made its own.
+    pub(super) fn take_renewed(&mut self) -> bool {
+        let renewed = std::mem::take(
+            &mut *self
+                .shared
+                .renewed
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner),
+        );
+        let any = !renewed.is_empty();
+        for (index, found) in renewed {
+            match found {
+                Ok(predictor) => self.succeed(index, predictor),
+                Err(why) => self.complain(why),
+            }
+        }
+        any
+    }
+
+    fn succeed(&mut self, index: usize, predictor: Box<dyn Predictor>) {
+        let Some(info) = self.models.get_mut(index) else {
+            return;
+        };
+        *info = Arc::new(predictor.info().clone());
+        self.position_weights[index] = predictor.position_weights().map(Arc::from);
+        let mut successors = self
+            .shared
+            .successors
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner);
+        successors.insert(index, predictor);
+        drop(successors);
+        if index == self.target.model {
+            // What was wanted is wanted again.
+            self.wanted = None;
+            self.repair();
+        }
+    }
+}

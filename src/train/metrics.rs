@@ -1,0 +1,141 @@
+//! What is logged of each epoch, a JSON object a line.
+
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::Path;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::TrainError;
+use super::step::{Gradients, Losses};
+use super::validate::Validation;
+use crate::model::checkpoint::{self, CheckpointError};
+
+/// The file that metrics are appended to.
+pub const METRICS: &str = "metrics.jsonl";
+
+/// One epoch. Two runs of one seed, data and number of threads differ in nothing but the seconds.
+#[derive(Clone, Debug, Serialize)]
+pub struct Line {
+    /// Updates so far.
+    pub update: u64,
+    /// Epochs so far.
+    pub epoch: u64,
+    /// Time trained, over all sittings.
+    pub elapsed_secs: f64,
+    /// Of the last update.
+    pub learning_rate: f64,
+    /// Running means of the losses.
+    pub train: Losses,
+    /// Means over the epoch's updates.
+    #[serde(flatten)]
+    pub meter: Summary,
+    /// Scores on the validation split.
+    pub val: Validation,
+}
+
+/// Gathers what the updates of an epoch measure.
+#[derive(Debug, Default)]
+pub struct Meter {
+    updates: u64,
+    stepping: Duration,
+    waited: Duration,
+    norms: BTreeMap<String, Norm>,
+    kl_per_latent: Vec<f64>,
+}
+
+/// Norm of a network's gradient before clipping.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Norm {
+    /// Mean over updates.
+    pub mean: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+/// What a [`Meter`] has gathered.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Updates that this is a mean of: fewer than an epoch's where a sitting began within it.
+    pub updates: u64,
+    /// Mean time of an update: forward, backward, clip, Adam.
+    pub secs_per_update: f64,
+    /// Time that updates waited for their batches, in all.
+    pub waited_secs: f64,
+    /// By network.
+    pub gradient_norm: BTreeMap<String, Norm>,
+    /// What each latent adds to the KL of the posterior against the prior, in nats.
+    pub kl_per_latent: Vec<f64>,
+}
+
+impl Meter {
+    /// Adds an update that took `stepping` after it had `waited` for its batch.
+    pub fn add(&mut self, gradients: &Gradients, stepping: Duration, waited: Duration) {
+        self.updates += 1;
+        self.stepping += stepping;
+        self.waited += waited;
+        for (network, norm) in &gradients.norms {
+            let sum = self.norms.entry(network.clone()).or_default();
+            sum.mean += f64::from(*norm);
+            sum.max = sum.max.max(f64::from(*norm));
+        }
+        self.kl_per_latent
+            .resize(gradients.kl_per_latent.len(), 0.0);
+        for (sum, &kl) in self.kl_per_latent.iter_mut().zip(&gradients.kl_per_latent) {
+            *sum += f64::from(kl);
+        }
+    }
+
+    /// What came together since the last time, and begins anew.
+    pub fn take(&mut self) -> Summary {
+        let Self {
+            updates,
+            stepping,
+            waited,
+            norms: mut gradient_norm,
+            mut kl_per_latent,
+        } = std::mem::take(self);
+        let n = updates.max(1) as f64;
+        for norm in gradient_norm.values_mut() {
+            norm.mean /= n;
+        }
+        kl_per_latent.iter_mut().for_each(|kl| *kl /= n);
+        Summary {
+            updates,
+            secs_per_update: stepping.as_secs_f64() / n,
+            waited_secs: waited.as_secs_f64(),
+            gradient_norm,
+            kl_per_latent,
+        }
+    }
+}
+
+/// Logs an epoch: the one place that every scalar passes.
+pub fn log(folder: &Path, line: &Line) -> Result<(), TrainError> {
+    let path = folder.join(METRICS);
+    let line = serde_json::json!(line);
+    std::fs::OpenOptions::new()
+        .create(true)
+        .append(true)
+        .open(&path)
+        .and_then(|mut file| writeln!(file, "{line}"))
+        .map_err(|cause| CheckpointError::File { path, cause }.into())
+}
+
+/// Drops the lines past `update`: a run that was killed had gone further than its last checkpoint.
+pub fn forget_after(folder: &Path, update: u64) -> Result<(), TrainError> {
+    #[derive(Deserialize)]
+    struct Line {
+        update: u64,
+    }
+    let path = folder.join(METRICS);
+    let Ok(text) = std::fs::read_to_string(&path) else {
+        return Ok(());
+    };
+    let kept = text
+        .lines()
+        .filter(|line| serde_json::from_str::<Line>(line).is_ok_and(|line| line.update <= update));
+    let kept: String = kept.flat_map(|line| [line, "\n"]).collect();
+    Ok(checkpoint::write_atomic(&path, kept.as_bytes())?)
+}
