@@ -16,7 +16,7 @@ fn event_files(folder: &Path) -> Vec<PathBuf> {
 fn records(mut bytes: &[u8]) -> Vec<&[u8]> {
     let masked = |data: &[u8]| {
         let checksum = crc32c::crc32c(data);
-        ((checksum >> 15) | (checksum << 17)).wrapping_add(0xA282_EAD8)
+        checksum.rotate_right(15).wrapping_add(0xA282_EAD8)
     };
     let mut records = Vec::new();
     while bytes.len() >= 12 {
