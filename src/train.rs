@@ -196,8 +196,9 @@ fn drive(
             .next()
             .ok_or_else(|| TrainError::Loader("the thread has ended".to_owned()))?;
         let (batch, episodes) = loaded?;
+        let differentiating = Instant::now();
         let gradients = step::gradients(model, &batch)?;
-        let mut stepping = started.elapsed() - waited;
+        let mut stepping = differentiating.elapsed();
         if let Some(what) = gradients.not_finite() {
             return Err(TrainError::NotFinite {
                 update: state.update,
