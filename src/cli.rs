@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::data::Role;
 use crate::episode::Split;
+use crate::model::config::Preset;
 
 /// Look inside a product-of-experts fusion.
 ///
@@ -143,19 +144,28 @@ pub struct TrainArgs {
     /// Dataset: an .mcap file or a folder of them
     #[arg(long)]
     pub data: PathBuf,
-    /// Which model: `v`, `vhp` or `v-h-p`
+    /// Which model: `v`, `vp`, `vh`, `vhp`, `vhp-c` or `v-h-p`
     #[arg(long, default_value = "v-h-p")]
     pub model: String,
+    /// How to train it: `paper`, `released` (the authors' script) or `fast` (an hour on two cores)
+    #[arg(long, default_value = "fast", value_parser = parse_preset)]
+    pub preset: Preset,
+    /// One key of the config, over the preset's; repeat for several: `--set training.batch=8` (docs/training.md)
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
     /// Run folder: checkpoints, metrics, report
     #[arg(long)]
     pub out: PathBuf,
     /// A config.toml to train instead of the model's own settings
     #[arg(long)]
     pub config: Option<PathBuf>,
-    /// Epochs over the training split [default: 20, or none with --minutes]
+    /// Epochs over the training split [default: the preset's, or none with --minutes or --updates]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
     pub epochs: Option<u64>,
-    /// Minutes to train for; with --epochs too, whichever comes first
+    /// Updates to train for; with another limit too, whichever comes first
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub updates: Option<u64>,
+    /// Minutes to train for; with another limit too, whichever comes first
     #[arg(long, value_parser = parse_minutes)]
     pub minutes: Option<f64>,
     /// Seed of initial weights, order, noise and masks, and of the validation split where the data name none
@@ -221,6 +231,13 @@ fn parse_minutes(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|minutes| minutes.is_finite() && *minutes > 0.0);
     minutes.ok_or_else(|| format!("{text:?} is not a positive number of minutes"))
+}
+
+fn parse_preset(name: &str) -> Result<Preset, String> {
+    Preset::ALL
+        .into_iter()
+        .find(|preset| preset.name() == name)
+        .ok_or_else(|| format!("there are {}", Preset::ALL.map(Preset::name).join(", ")))
 }
 
 /// Up to a month; 0 is after every update.

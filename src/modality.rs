@@ -29,17 +29,20 @@ pub enum Expert {
     Proprio,
     /// One encoder of haptic and proprio windows together (the paper's).
     Joint,
+    /// One encoder of everything, embeddings side by side under one head (the paper's baseline).
+    Concat,
     /// The learned dynamics, `p(z_t | z_{t-1}, u_{t-1})`.
     Prior,
 }
 
 impl Expert {
     /// All experts, in the order in which faces list them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Vision,
         Self::Haptic,
         Self::Proprio,
         Self::Joint,
+        Self::Concat,
         Self::Prior,
     ];
 
@@ -50,17 +53,31 @@ impl Expert {
             Self::Haptic => &[Modality::Haptic],
             Self::Proprio => &[Modality::Proprio],
             Self::Joint => &[Modality::Haptic, Modality::Proprio],
+            Self::Concat => &[Modality::Vision, Modality::Haptic, Modality::Proprio],
             Self::Prior => &[],
         }
     }
 
-    /// The letter that stands for it: V, H, P, J, and D for the dynamics prior.
+    /// What it looks at, each piece with networks of its own: itself, but for the concatenation; nothing for the prior.
+    pub fn streams(self) -> &'static [Self] {
+        match self {
+            Self::Vision => &[Self::Vision],
+            Self::Haptic => &[Self::Haptic],
+            Self::Proprio => &[Self::Proprio],
+            Self::Joint => &[Self::Joint],
+            Self::Concat => &[Self::Vision, Self::Joint],
+            Self::Prior => &[],
+        }
+    }
+
+    /// The letter that stands for it: V, H, P, J, C, and D for the dynamics prior.
     pub fn letter(self) -> char {
         match self {
             Self::Vision => 'V',
             Self::Haptic => 'H',
             Self::Proprio => 'P',
             Self::Joint => 'J',
+            Self::Concat => 'C',
             Self::Prior => 'D',
         }
     }
@@ -72,6 +89,7 @@ impl Expert {
             Self::Haptic => "haptic",
             Self::Proprio => "proprio",
             Self::Joint => "joint",
+            Self::Concat => "concat",
             Self::Prior => "prior",
         }
     }
@@ -83,6 +101,7 @@ impl Expert {
             Self::Haptic => (0xD5, 0x5E, 0x00),
             Self::Proprio => (0x00, 0x9E, 0x73),
             Self::Joint => (0xE6, 0x9F, 0x00),
+            Self::Concat => (0xCC, 0x79, 0xA7),
             Self::Prior => (0x99, 0x99, 0x99),
         }
     }
@@ -90,7 +109,7 @@ impl Expert {
     /// The fill that carries the same meaning without colour.
     pub fn fill(self) -> char {
         match self {
-            Self::Vision => '█',
+            Self::Vision | Self::Concat => '█',
             Self::Haptic | Self::Joint => '▓',
             Self::Proprio => '▒',
             Self::Prior => '░',

@@ -32,14 +32,14 @@ use self::encoder::Encoder;
 use self::network::{Draw, Network};
 use crate::modality::Expert;
 
-/// A model: an encoder and a decoder for each sensor expert, and the dynamics.
+/// A model: an encoder for each sensor expert, a decoder for each stream they see, and the dynamics.
 #[derive(Debug)]
 pub struct Model {
     /// Its sizes and settings.
     pub config: Config,
     /// In the order of the experts.
     pub encoders: Vec<Encoder>,
-    /// In the order of the experts.
+    /// In the order of the streams.
     pub decoders: Vec<Decoder>,
     /// The prior expert.
     pub dynamics: Dynamics,
@@ -48,9 +48,9 @@ pub struct Model {
 /// The folded weights of every network: with gradients while training, without once trained.
 #[derive(Clone, Debug)]
 pub struct Weights {
-    /// In the order of the experts.
-    pub encoders: Vec<Tensor>,
-    /// In the order of the experts.
+    /// In the order of the experts, one for each of an encoder's networks.
+    pub encoders: Vec<Vec<Tensor>>,
+    /// In the order of the streams.
     pub decoders: Vec<Tensor>,
     /// The dynamics'.
     pub dynamics: Tensor,
@@ -62,7 +62,7 @@ impl Weights {
     pub fn detach(&self) -> Self {
         let all = |weights: &[Tensor]| weights.iter().map(Tensor::detach).collect();
         Self {
-            encoders: all(&self.encoders),
+            encoders: self.encoders.iter().map(|part| all(part)).collect(),
             decoders: all(&self.decoders),
             dynamics: self.dynamics.detach(),
         }
@@ -95,25 +95,16 @@ impl Model {
     }
 
     fn build(config: Config, draw: &mut Draw, device: &Device) -> Result<Self> {
-        let (mut encoders, mut decoders) = (Vec::new(), Vec::new());
-        for &expert in &config.experts {
-            let (enc, dec) = (
-                format!("{}_enc", stem(expert)),
-                format!("{}_dec", stem(expert)),
-            );
-            if expert == Expert::Vision {
-                encoders.push(Encoder::of_images(&config, &enc, draw, device)?);
-                decoders.push(Decoder::of_images(&config, &dec, draw, device)?);
-            } else {
-                let channels = config
-                    .channels(expert)
-                    .iter()
-                    .map(|(channels, _)| channels.names.len())
-                    .sum();
-                encoders.push(Encoder::of_windows(&config, channels, &enc, draw, device)?);
-                decoders.push(Decoder::of_windows(&config, channels, &dec, draw, device)?);
-            }
-        }
+        let encoders = config
+            .experts
+            .iter()
+            .map(|&expert| Encoder::new(&config, expert, draw, device))
+            .collect::<Result<_>>()?;
+        let decoders = config
+            .streams()
+            .into_iter()
+            .map(|stream| Decoder::new(&config, stream, draw, device))
+            .collect::<Result<_>>()?;
         let dynamics = Dynamics::new(&config, "dyn", draw, device)?;
         Ok(Self {
             config,
@@ -125,7 +116,7 @@ impl Model {
 
     /// Every network: encoders, decoders, dynamics.
     pub fn networks(&self) -> impl Iterator<Item = &Network> {
-        let encoders = self.encoders.iter().map(|encoder| &encoder.network);
+        let encoders = self.encoders.iter().flat_map(Encoder::networks);
         let decoders = self.decoders.iter().map(|decoder| &decoder.network);
         encoders
             .chain(decoders)
@@ -145,7 +136,7 @@ impl Model {
             encoders: self
                 .encoders
                 .iter()
-                .map(|e| e.network.folded())
+                .map(Encoder::folded)
                 .collect::<Result<_>>()?,
             decoders: self
                 .decoders

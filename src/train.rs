@@ -22,9 +22,10 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
-use self::batch::Batch;
+use self::batch::{Batch, Draws};
 use self::loader::{AHEAD, Loader};
 use self::metrics::Meter;
+use self::schedule::Phase;
 use self::state::State;
 use self::step::Losses;
 use self::validate::Validation;
@@ -132,15 +133,15 @@ pub fn run(
     run: Run,
     report: impl FnMut(&Progress),
 ) -> Result<Outcome, TrainError> {
-    let (config, seed) = (&model.config, state.origin.seed);
+    let config = &model.config;
     let epoch_updates = epoch_updates(model, run);
-    let prepare = move |update: u64| -> Loaded {
+    let prepare = move |draws: Draws| -> Loaded {
         let chosen = batch::choose(
             run.train.len(),
             config.training.batch,
             epoch_updates,
-            seed,
-            update,
+            draws.seed,
+            draws.update,
         );
         let episodes = chosen
             .iter()
@@ -148,7 +149,7 @@ pub fn run(
             .collect::<Result<Vec<Arc<Episode>>, _>>()?;
         let episodes: Vec<&Episode> = episodes.iter().map(AsRef::as_ref).collect();
         let names = chosen.iter().map(|&i| run.train.id(i).to_owned());
-        let batch = Batch::new(config, &episodes, Some((seed, update)))?;
+        let batch = Batch::new(config, &episodes, Some(draws))?;
         Ok((batch, names.collect()))
     };
     thread::scope(|scope| {
@@ -167,7 +168,7 @@ fn drive(
     model: &Model,
     state: &mut State,
     run: Run,
-    loader: &Loader<u64, Loaded>,
+    loader: &Loader<Draws, Loaded>,
     mut report: impl FnMut(&Progress),
 ) -> Result<Outcome, TrainError> {
     let training = &model.config.training;
@@ -189,15 +190,28 @@ fn drive(
         }
         let started = Instant::now();
         while ordered <= state.update + AHEAD as u64 {
-            loader.order(ordered);
+            let ahead = budget.fraction(ordered, epoch_updates, state.elapsed);
+            loader.order(Draws {
+                seed: state.origin.seed,
+                update: ordered,
+                segment: Phase::of(training, ordered, epoch_updates, ahead).segment,
+            });
             ordered += 1;
         }
         let (loaded, waited) = loader
             .next()
             .ok_or_else(|| TrainError::Loader("the thread has ended".to_owned()))?;
         let (batch, episodes) = loaded?;
+        let phase = Phase::of(training, state.update, epoch_updates, fraction);
+        if let Some(before) = state.update.checked_sub(1) {
+            let before = Phase::of(training, before, epoch_updates, fraction);
+            if before.stage != phase.stage {
+                // Each stage has an optimiser of its own.
+                state.moments.clear();
+            }
+        }
         let differentiating = Instant::now();
-        let gradients = step::gradients(model, &batch)?;
+        let gradients = step::gradients(model, &batch, &phase)?;
         let mut stepping = differentiating.elapsed();
         if let Some(what) = gradients.not_finite() {
             return Err(TrainError::NotFinite {
@@ -213,8 +227,7 @@ fn drive(
             saved = Some(Instant::now());
         }
         let applying = Instant::now();
-        let rate = schedule::learning_rate(training, state.update, fraction);
-        gradients.apply(model, &mut state.moments, rate)?;
+        gradients.apply(model, &mut state.moments, &phase)?;
         stepping += applying.elapsed();
         meter.add(&gradients, stepping, waited);
         state.update += 1;
@@ -240,7 +253,7 @@ fn drive(
                 update: state.update,
                 epoch: state.update / epoch_updates,
                 elapsed_secs: state.elapsed.as_secs_f64(),
-                learning_rate: rate,
+                learning_rate: phase.rate,
                 train: losses,
                 meter: meter.take(),
                 val: scores.clone(),

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
-use anyhow::{Context, bail};
+use anyhow::{Context, anyhow, bail};
 use candle_core::Device;
 
 use self::sets::Sets;
@@ -22,9 +22,6 @@ use crate::train::schedule::Budget;
 use crate::train::state::{Origin, STATE, State};
 use crate::train::totals::Totals;
 use crate::train::{self, Outcome, Run, metrics, statistics};
-
-/// Epochs when neither epochs nor minutes are asked for.
-const EPOCHS: u64 = 20;
 
 /// Runs it.
 pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
@@ -50,12 +47,10 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
             seed: args.seed.unwrap_or(0),
             data_hash: dataset.data_hash().to_owned(),
             threads: rayon::current_num_threads(),
-            budget: Budget {
-                epochs: args
-                    .epochs
-                    .or_else(|| args.minutes.is_none().then_some(EPOCHS)),
-                minutes: args.minutes,
-            },
+            budget: asked(args).unwrap_or(Budget {
+                epochs: Some(config.training.epochs),
+                ..Budget::default()
+            }),
         },
     };
     std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
@@ -133,16 +128,32 @@ fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
             args.out.display()
         );
     }
-    match &args.config {
-        Some(path) => Ok(checkpoint::load_config(path)?),
-        None => Config::named(&args.model).with_context(|| {
+    let mut config = match &args.config {
+        Some(path) => checkpoint::load_config(path)?,
+        None => Config::preset(&args.model, args.preset).with_context(|| {
             format!(
                 "no model {:?}; there are {}",
                 args.model,
                 Config::NAMES.join(", ")
             )
-        }),
+        })?,
+    };
+    for assignment in &args.set {
+        config = config
+            .set(assignment)
+            .map_err(|what| anyhow!("--set {what}"))?;
     }
+    Ok(config)
+}
+
+/// The limits that were asked for, if any.
+fn asked(args: &TrainArgs) -> Option<Budget> {
+    let budget = Budget {
+        epochs: args.epochs,
+        updates: args.updates,
+        minutes: args.minutes,
+    };
+    (budget != Budget::default()).then_some(budget)
 }
 
 /// The config and the origin of the run in the run folder.
@@ -177,15 +188,7 @@ fn same_run(args: &TrainArgs, origin: &Origin, dataset: &Dataset) -> anyhow::Res
             rayon::current_num_threads()
         );
     }
-    let asked = Budget {
-        epochs: args.epochs,
-        minutes: args.minutes,
-    };
-    let budget = if asked == Budget::default() {
-        origin.budget
-    } else {
-        asked
-    };
+    let budget = asked(args).unwrap_or(origin.budget);
     Ok(Origin {
         budget,
         ..origin.clone()

@@ -1,8 +1,16 @@
 //! What a model is made of, and how it was trained: the `config.toml` of a checkpoint.
 
+mod channels;
+mod preset;
+mod set;
+mod training;
+
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+pub use self::channels::Channels;
+pub use self::preset::Preset;
+pub use self::training::{Clipped, Init, Scaling, Training};
 use super::kernel::pointwise::Activation;
 use crate::episode::{HAPTIC_CHANNELS, Layout, PROPRIO_CHANNELS};
 use crate::modality::{Expert, ExpertSet, Modality};
@@ -21,9 +29,9 @@ pub struct ConfigError {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
-    /// `v`, `vhp`, `v-h-p`.
+    /// `v`, `vp`, `vh`, `vhp`, `vhp-c`, `v-h-p`, or one's own.
     pub name: String,
-    /// Sensor experts, in the order of the digits that switch them. Each decodes what it sees.
+    /// Sensor experts, in the order of the digits that switch them. What each sees is also decoded.
     pub experts: Vec<Expert>,
     /// Whether the dynamics prior is multiplied in; if not, it enters only the KL.
     pub prior_expert: bool,
@@ -52,89 +60,7 @@ pub struct Config {
     pub training: Training,
 }
 
-/// Which channels of a window a model sees, and how they are scaled: `(x - mean) / scale`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Channels {
-    /// Names: `fx fy fz tx ty tz` or `px py pz vx vy vz`.
-    pub names: Vec<String>,
-    /// One a channel; empty until a training set has been seen.
-    #[serde(default)]
-    pub mean: Vec<f32>,
-    /// One a channel; empty until a training set has been seen.
-    #[serde(default)]
-    pub scale: Vec<f32>,
-}
-
-/// How a model is trained.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Training {
-    /// Episodes of a batch.
-    pub batch: usize,
-    /// Peak learning rate of Adam.
-    pub learning_rate: f64,
-    /// Updates over which the rate rises to its peak.
-    pub warm_up: usize,
-    /// The rate falls along a cosine to this part of its peak; 1 keeps it.
-    pub final_rate: f64,
-    /// Largest gradient norm of each network.
-    pub clip: f32,
-    /// Steps ahead that the prior is held to the posterior (overshooting); 1 is the plain KL.
-    pub n_step: usize,
-    /// Weight of the KL.
-    pub kl_weight: f64,
-    /// Weight of each expert's squared error, in the order of the experts; empty until a training set has been seen.
-    #[serde(default)]
-    pub error_weights: Vec<f32>,
-    /// Whether experts are left out at random while training, so that switches are in the distribution.
-    pub masks: bool,
-}
-
 impl Config {
-    /// The settings of a named model; none for a name that is not known.
-    pub fn named(name: &str) -> Option<Self> {
-        let (experts, prior_expert, masks) = match name {
-            "v" => (vec![Expert::Vision], false, false),
-            "vhp" => (vec![Expert::Vision, Expert::Joint], true, false),
-            "v-h-p" => (
-                vec![Expert::Vision, Expert::Haptic, Expert::Proprio],
-                true,
-                true,
-            ),
-            _ => return None,
-        };
-        Some(Self {
-            name: name.to_owned(),
-            experts,
-            prior_expert,
-            frame_size: 64,
-            frame_stack: 1,
-            window: 32,
-            step_secs: None,
-            latent: 16,
-            hidden: 256,
-            mixtures: 15,
-            activation: Activation::Elu,
-            haptic: Channels::of(&HAPTIC_CHANNELS),
-            proprio: Channels::of(&PROPRIO_CHANNELS),
-            training: Training {
-                batch: 32,
-                learning_rate: 1e-3,
-                warm_up: 200,
-                final_rate: 0.02,
-                clip: 0.5,
-                n_step: 2,
-                kl_weight: 0.5,
-                error_weights: Vec::new(),
-                masks,
-            },
-        })
-    }
-
-    /// Names that [`Self::named`] knows.
-    pub const NAMES: [&str; 3] = ["v", "vhp", "v-h-p"];
-
     /// Numbers of a control.
     pub const CONTROL: usize = 2;
 
@@ -144,6 +70,16 @@ impl Config {
             frame_size: self.frame_size,
             window: self.window,
         }
+    }
+
+    /// What is observed and decoded, each with networks of its own: the experts, but for the concatenation, which sees
+    /// frames and windows.
+    pub fn streams(&self) -> Vec<Expert> {
+        self.experts
+            .iter()
+            .flat_map(|expert| expert.streams())
+            .copied()
+            .collect()
     }
 
     /// Experts that can be switched: the sensors and the prior.
@@ -156,6 +92,8 @@ impl Config {
         let all = ExpertSet::full(self.experts.len());
         if self.training.masks {
             (0..=all.0).map(ExpertSet).collect()
+        } else if self.training.rollouts > 0.0 {
+            vec![ExpertSet(0), all]
         } else {
             vec![all]
         }
@@ -171,11 +109,19 @@ impl Config {
         expert.modalities().iter().filter_map(of).collect()
     }
 
+    /// How many channels the windows of a stream have.
+    pub fn window_channels(&self, stream: Expert) -> usize {
+        let each = self.channels(stream).into_iter();
+        each.map(|(channels, _)| channels.names.len()).sum()
+    }
+
     /// Checks what the networks rely on.
     pub fn validate(&self) -> Result<(), ConfigError> {
-        let first = self.experts.first() == Some(&Expert::Vision);
-        if !first || self.experts.contains(&Expert::Prior) || repeats(&self.experts) {
-            let what = "start with \"vision\", name each once, and leave out \"prior\", which is always there";
+        let streams = self.streams();
+        let first = streams.first() == Some(&Expert::Vision);
+        if !first || self.experts.contains(&Expert::Prior) || repeats(&streams) {
+            let what = "start with \"vision\", name each once, and leave out \"prior\", which is always there; or \
+                        \"concat\" alone";
             return refuse("experts", what);
         }
         if self.frame_size != 64 {
@@ -194,7 +140,10 @@ impl Config {
             ("hidden", self.hidden),
             ("mixtures", self.mixtures),
             ("training.batch", self.training.batch),
-            ("training.n_step", self.training.n_step),
+            (
+                "training.n_step_after",
+                self.training.n_step_after.len() + 1,
+            ),
         ];
         if let Some((key, size)) = sizes
             .into_iter()
@@ -204,13 +153,7 @@ impl Config {
         }
         self.haptic.validate("haptic", &HAPTIC_CHANNELS)?;
         self.proprio.validate("proprio", &PROPRIO_CHANNELS)?;
-        if self.training.masks && !self.prior_expert {
-            return refuse(
-                "training.masks",
-                "without `prior_expert` a step whose experts are all left out has no belief",
-            );
-        }
-        self.training.validate(self.experts.len())
+        self.training.validate(streams.len())
     }
 }
 
@@ -231,104 +174,20 @@ fn repeats<T: PartialEq>(items: &[T]) -> bool {
         .any(|(i, item)| items[..i].contains(item))
 }
 
-impl Training {
-    fn validate(&self, experts: usize) -> Result<(), ConfigError> {
-        let positive = [
-            ("training.learning_rate", self.learning_rate),
-            ("training.clip", f64::from(self.clip)),
-            ("training.final_rate", self.final_rate),
-        ];
-        if let Some((key, value)) = positive
-            .into_iter()
-            .find(|(_, value)| !(value.is_finite() && *value > 0.0))
-        {
-            return refuse(key, format!("must be a positive number, is {value}"));
-        }
-        if !self.kl_weight.is_finite() || self.kl_weight < 0.0 {
-            return refuse("training.kl_weight", "must be 0 or a positive number");
-        }
-        let weights = &self.error_weights;
-        if !weights.is_empty()
-            && (weights.len() != experts || weights.iter().any(|w| !w.is_finite() || *w < 0.0))
-        {
-            return refuse(
-                "training.error_weights",
-                format!("one number, 0 or positive, for each of {experts} experts"),
-            );
-        }
-        Ok(())
-    }
-}
-
-impl Channels {
-    fn of(names: &[&str]) -> Self {
-        Self {
-            names: names.iter().map(|&name| name.to_owned()).collect(),
-            mean: Vec::new(),
-            scale: Vec::new(),
-        }
-    }
-
-    fn validate(&self, key: &'static str, known: &[&str]) -> Result<(), ConfigError> {
-        if let Some(name) = self
-            .names
-            .iter()
-            .find(|name| !known.contains(&name.as_str()))
-        {
-            return refuse(
-                key,
-                format!("no channel {name:?}; there are {}", known.join(" ")),
-            );
-        }
-        if self.names.is_empty() || repeats(&self.names) {
-            return refuse(key, "name at least one channel, and each once");
-        }
-        for numbers in [&self.mean, &self.scale] {
-            if !numbers.is_empty() && numbers.len() != self.names.len() {
-                return refuse(
-                    key,
-                    format!(
-                        "{} channels but {} numbers",
-                        self.names.len(),
-                        numbers.len()
-                    ),
-                );
-            }
-        }
-        if self.mean.iter().any(|mean| !mean.is_finite())
-            || self.scale.iter().any(|s| !s.is_finite() || *s <= 0.0)
-        {
-            return refuse(key, "a mean must be a number, a scale a positive one");
-        }
-        Ok(())
-    }
-
-    /// For each channel: its place among all of the modality's channels, its mean and its scale.
-    pub fn columns<'a>(
-        &'a self,
-        known: &'a [&str],
-    ) -> impl Iterator<Item = (usize, f32, f32)> + 'a {
-        self.names.iter().enumerate().filter_map(move |(i, name)| {
-            let at = known.iter().position(|known| known == name)?;
-            Some((
-                at,
-                self.mean.get(i).copied().unwrap_or(0.0),
-                self.scale.get(i).copied().unwrap_or(1.0),
-            ))
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn the_named_models_are_valid_and_what_cannot_be_is_refused_by_key() {
-        for name in Config::NAMES {
+        for (name, preset) in Config::NAMES
+            .iter()
+            .flat_map(|name| Preset::ALL.map(|p| (name, p)))
+        {
+            let config = Config::preset(name, preset);
             assert!(
-                Config::named(name).is_some_and(|config| config.validate().is_ok()),
-                "{name}"
+                config.is_some_and(|c| c.validate().is_ok()),
+                "{name} {preset:?}"
             );
         }
         let refused = |change: fn(&mut Config)| {
@@ -344,7 +203,12 @@ mod tests {
             refused(|c| c.proprio.names[0] = "qx".into()),
             Err("proprio")
         );
-        assert_eq!(refused(|c| c.prior_expert = false), Err("training.masks"));
+        assert_eq!(refused(|c| c.experts.push(Expert::Concat)), Err("experts"));
+        assert_eq!(
+            refused(|c| c.training.rollouts = 1.5),
+            Err("training.rollouts")
+        );
+        assert_eq!(refused(|c| c.training.segment = 1), Err("training.segment"));
         assert_eq!(
             refused(|c| c.training.learning_rate = f64::NAN),
             Err("training.learning_rate")

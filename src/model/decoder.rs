@@ -14,6 +14,8 @@ use super::kernel::pointwise::Activation;
 use super::kernel::squared_error::{PerSample, SquaredError};
 use super::layers::Builder;
 use super::network::{Draw, Network, Parameters};
+use super::stem;
+use crate::modality::Expert;
 
 /// One expert's decoder: a chain from the latent to an observation.
 #[derive(Debug)]
@@ -25,7 +27,7 @@ pub struct Decoder {
 
 /// Latent to 1024, then transposed convolutions 128 (k5), 64 (k5), 32 (k6), out (k6), stride 2, sigmoid.
 fn image(config: &Config) -> (Arc<Chain>, Parameters) {
-    let mut build = Builder::default();
+    let mut build = Builder::new(config.training.init);
     let mut inputs = 1024;
     build.expand("linear", config.latent, inputs, 1, config.activation);
     let mut side = 1;
@@ -55,7 +57,7 @@ fn image(config: &Config) -> (Arc<Chain>, Parameters) {
 /// Latent to 256 at each of W samples, then transposed convolutions 128, 64, 32, channels with kernel 3, no final
 /// nonlinearity.
 fn window(config: &Config, channels: usize) -> (Arc<Chain>, Parameters) {
-    let mut build = Builder::default();
+    let mut build = Builder::new(config.training.init);
     let mut inputs = 256;
     build.expand(
         "linear",
@@ -83,35 +85,15 @@ fn window(config: &Config, channels: usize) -> (Arc<Chain>, Parameters) {
 }
 
 impl Decoder {
-    /// The decoder of frames.
-    pub fn of_images(
-        config: &Config,
-        name: &str,
-        draw: &mut Draw,
-        device: &Device,
-    ) -> Result<Self> {
-        Self::new(image(config), name, draw, device)
-    }
-
-    /// The decoder of windows with `channels` channels.
-    pub fn of_windows(
-        config: &Config,
-        channels: usize,
-        name: &str,
-        draw: &mut Draw,
-        device: &Device,
-    ) -> Result<Self> {
-        Self::new(window(config, channels), name, draw, device)
-    }
-
-    fn new(
-        (chain, parameters): (Arc<Chain>, Parameters),
-        name: &str,
-        draw: &mut Draw,
-        device: &Device,
-    ) -> Result<Self> {
+    /// The decoder of `stream`.
+    pub fn new(config: &Config, stream: Expert, draw: &mut Draw, device: &Device) -> Result<Self> {
+        let (chain, parameters) = match stream {
+            Expert::Vision => image(config),
+            _ => window(config, config.window_channels(stream)),
+        };
+        let name = format!("{}_dec", stem(stream));
         Ok(Self {
-            network: Network::new(name, parameters, draw, device)?,
+            network: Network::new(&name, parameters, draw, device)?,
             chain,
         })
     }

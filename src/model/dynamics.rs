@@ -2,7 +2,7 @@
 
 use candle_core::{D, Device, Result, Tensor};
 
-use super::config::Config;
+use super::config::{self, Config};
 use super::fallback;
 use super::gaussian::DiagGaussian;
 use super::kernel::cell::{Cell, Sizes};
@@ -29,7 +29,7 @@ pub struct Transition {
     pub prior: DiagGaussian,
 }
 
-fn parameters(sizes: Sizes) -> Parameters {
+fn parameters(sizes: Sizes, init: config::Init) -> Parameters {
     let Sizes {
         latent,
         inputs,
@@ -60,7 +60,11 @@ fn parameters(sizes: Sizes) -> Parameters {
         },
         recurrent,
     );
-    let bias = p.push(Stretch::Plain(head), Init::Zero);
+    let bias = match init {
+        config::Init::Torch => recurrent,
+        config::Init::Scaled => Init::Zero,
+    };
+    let bias = p.push(Stretch::Plain(head), bias);
     for (name, first, len) in [("linear", 0, mixtures), ("fc_logvar", mixtures, latent)] {
         p.slot(format!("{name}.bias"), &[len], &[(len, 1)], bias + first);
         p.slot(
@@ -78,9 +82,10 @@ fn parameters(sizes: Sizes) -> Parameters {
     }
     let bases = p.push(
         Stretch::Plain(mixtures * latent * inputs),
-        Init::NearIdentity {
+        Init::Bases {
             latent,
             columns: inputs,
+            disturbed: (init == config::Init::Scaled).then_some(0.1),
         },
     );
     for (name, first, len) in [("A", 0, latent), ("B", latent, inputs - latent)] {
@@ -104,9 +109,17 @@ impl Dynamics {
             mixtures: config.mixtures,
         };
         Ok(Self {
-            network: Network::new(name, parameters(sizes), draw, device)?,
+            network: Network::new(name, parameters(sizes, config.training.init), draw, device)?,
             sizes,
         })
+    }
+
+    /// 1 at the base matrices, else 0, laid out as the parameters.
+    pub fn bases_mask(&self) -> Result<Tensor> {
+        let all = self.network.theta().elem_count();
+        let bases = self.sizes.parts()[6];
+        let mask = (0..all).map(|i| f32::from(i >= all - bases)).collect();
+        Tensor::from_vec(mask, all, self.network.theta().device())
     }
 
     /// What is believed before anything is seen: the zero state and N(0, 20 I), for `batch` episodes.

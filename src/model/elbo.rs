@@ -6,9 +6,21 @@ use super::dynamics::Dynamics;
 use super::filter::Filtered;
 use super::gaussian::DiagGaussian;
 
-/// KL(q_t ‖ p_t) in nats: `(B, T)`.
-pub fn kl(filtered: &Filtered) -> Result<Tensor> {
-    filtered.posterior.kl(&filtered.prior)
+/// KL(q_t ‖ p_t) in nats: `(B, T)`, its gradient balanced.
+pub fn kl(filtered: &Filtered, balance: f64) -> Result<Tensor> {
+    balanced(&filtered.posterior, &filtered.prior, balance)
+}
+
+/// KL(q ‖ p), of whose gradient `balance` moves p and the rest moves q, twice as much as alone (Hafner et al. 2021);
+/// ½ is the plain KL.
+fn balanced(posterior: &DiagGaussian, prior: &DiagGaussian, balance: f64) -> Result<Tensor> {
+    if (balance - 0.5).abs() < f64::EPSILON {
+        return posterior.kl(prior);
+    }
+    let towards_posterior = posterior.detach().kl(prior)?;
+    let towards_prior = posterior.kl(&prior.detach())?;
+    towards_posterior.affine(2.0 * balance, 0.0)?
+        + towards_prior.affine(2.0 - 2.0 * balance, 0.0)?
 }
 
 /// What each latent adds to it: `(B, T, Z)`.
@@ -25,6 +37,7 @@ pub fn overshooting(
     filtered: &Filtered,
     controls: &Tensor,
     n_step: usize,
+    balance: f64,
 ) -> Result<Vec<Tensor>> {
     let (batch, steps, latent) = filtered.z.dims3()?;
     let mut terms = Vec::new();
@@ -45,7 +58,8 @@ pub fn overshooting(
             mean: shape(&next.prior.mean)?,
             log_var: shape(&next.prior.log_var)?,
         };
-        terms.push(filtered.posterior.narrow(1, n, len)?.kl(&prior)?);
+        let posterior = filtered.posterior.narrow(1, n, len)?;
+        terms.push(balanced(&posterior, &prior, balance)?);
         debug_assert_eq!(prior.mean.dim(2)?, latent);
         (mean, hidden) = (prior.mean, shape(&next.hidden)?);
     }

@@ -1,6 +1,6 @@
 //! Diagonal Gaussians over the latent, as tensors.
 
-use candle_core::{D, Result, Tensor};
+use candle_core::{D, Result, Shape, Tensor};
 
 /// Variances get this much when a KL divides by them, and products when their logarithm is taken, as released.
 pub const EPSILON: f64 = 1e-8;
@@ -38,6 +38,23 @@ impl DiagGaussian {
 
     fn variance(&self) -> Result<Tensor> {
         self.log_var.exp()? + EPSILON
+    }
+
+    /// The same numbers without a gradient.
+    #[must_use]
+    pub fn detach(&self) -> Self {
+        Self {
+            mean: self.mean.detach(),
+            log_var: self.log_var.detach(),
+        }
+    }
+
+    /// The same numbers in another shape.
+    pub fn reshape<S: Into<Shape> + Clone>(&self, shape: S) -> Result<Self> {
+        Ok(Self {
+            mean: self.mean.reshape(shape.clone().into())?,
+            log_var: self.log_var.reshape(shape.into())?,
+        })
     }
 
     /// Rows `start..start + len` of dimension `dim`.

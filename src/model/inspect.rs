@@ -42,19 +42,19 @@ impl<M: Borrow<Model>> Inspector<M> {
     /// Each expert's Gaussian at each belief of `observations`.
     pub fn encode(&self, observations: &Observations) -> Result<ExpertTrace> {
         let mut experts = Vec::new();
-        for ((encoder, weights), seen) in self
-            .model()
-            .encoders
-            .iter()
-            .zip(&self.weights.encoders)
-            .zip(&observations.experts)
-        {
-            let seen =
-                Tensor::from_slice(seen, (observations.beliefs, encoder.inputs()), &Device::Cpu)?;
-            experts.push(trace(
-                &encoder.encode(&seen, weights, false)?,
-                self.model().config.latent,
-            )?);
+        let mut streams = observations.streams.iter();
+        for (encoder, weights) in self.model().encoders.iter().zip(&self.weights.encoders) {
+            let seen = streams
+                .by_ref()
+                .take(encoder.streams())
+                .enumerate()
+                .map(|(i, seen)| {
+                    let shape = (observations.beliefs, encoder.inputs(i));
+                    Tensor::from_slice(seen, shape, &Device::Cpu)
+                })
+                .collect::<Result<Vec<_>>>()?;
+            let expert = encoder.encode(&seen, weights, false)?;
+            experts.push(trace(&expert, self.model().config.latent)?);
         }
         Ok(ExpertTrace {
             experts,

@@ -13,6 +13,7 @@ pub mod gather;
 pub mod layer;
 pub mod matmul;
 pub mod pointwise;
+pub mod running_mean;
 pub mod squared_error;
 pub mod weight_norm;
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::config;
 use super::kernel::chain::Chain;
 use super::kernel::gather::Windows;
 use super::kernel::layer::Kind;
@@ -10,15 +11,10 @@ use super::kernel::weight_norm::Stretch;
 use super::network::{Init, Parameters};
 
 /// A chain under construction with its parameters.
-#[derive(Default)]
 pub struct Builder {
+    init: config::Init,
     layers: Vec<(Kind, Activation, bool)>,
     parameters: Parameters,
-}
-
-/// Bound of a uniform distribution with variance `gain² / inputs`.
-fn uniform(gain: f32, inputs: usize) -> Init {
-    Init::Uniform(gain * (3.0 / inputs as f32).sqrt())
 }
 
 /// He's gain where a nonlinearity follows that halves the variance, else 1.
@@ -30,6 +26,23 @@ fn gain(activation: Activation) -> f32 {
 }
 
 impl Builder {
+    /// A chain without layers; parameters will be drawn as `init` says.
+    pub fn new(init: config::Init) -> Self {
+        Self {
+            init,
+            layers: Vec::new(),
+            parameters: Parameters::default(),
+        }
+    }
+
+    /// How weights are drawn of which `reached` meet in one output, and which PyTorch counts as `fan_in`.
+    fn uniform(&self, activation: Activation, reached: usize, fan_in: usize) -> Init {
+        match self.init {
+            config::Init::Torch => Init::Uniform(1.0 / (fan_in as f32).sqrt()),
+            config::Init::Scaled => Init::Uniform(gain(activation) * (3.0 / reached as f32).sqrt()),
+        }
+    }
+
     /// The chain, and what is trained in it.
     pub fn finish(self) -> (Arc<Chain>, Parameters) {
         (Arc::new(Chain::new(self.layers)), self.parameters)
@@ -50,9 +63,8 @@ impl Builder {
             norms: co,
             inner: 1,
         };
-        let g = self
-            .parameters
-            .push(normed, uniform(gain(activation), windows.len()));
+        let init = self.uniform(activation, windows.len(), windows.len());
+        let g = self.parameters.push(normed, init);
         let row = windows.height == 1;
         let (ones, shape): (&[usize], &[usize]) = if row {
             (&[co, 1, 1], &[co, ci, kw])
@@ -95,9 +107,9 @@ impl Builder {
         } else {
             inputs * kh * kw / (windows.stride * windows.stride)
         };
-        let g = self
-            .parameters
-            .push(normed, uniform(gain(activation), reached));
+        // PyTorch counts the outputs of a transposed convolution as its inputs.
+        let init = self.uniform(activation, reached, windows.len());
+        let g = self.parameters.push(normed, init);
         let axes = [
             (inputs, (kh * kw * co) as isize),
             (co, 1),
@@ -135,9 +147,8 @@ impl Builder {
             norms: ci,
             inner: co,
         };
-        let g = self
-            .parameters
-            .push(normed, uniform(gain(activation), windows.len()));
+        let init = self.uniform(activation, windows.len(), co * k);
+        let g = self.parameters.push(normed, init);
         let stride = (ci * co) as isize;
         let axes = [(ci, co as isize), (co, 1), (k, -stride)];
         self.parameters
@@ -156,15 +167,18 @@ impl Builder {
     /// linear layers over `(channels, places)`.
     pub fn heads(&mut self, channels: usize, places: usize, latent: usize) {
         let (inputs, outputs) = (channels * places, 2 * latent);
-        let g = self.parameters.push(
-            Stretch::Normed {
-                outer: inputs,
-                norms: outputs,
-                inner: 1,
-            },
-            uniform(1.0, inputs),
-        );
-        let bias = self.parameters.push(Stretch::Plain(outputs), Init::Zero);
+        let init = self.uniform(Activation::Linear, inputs, inputs);
+        let normed = Stretch::Normed {
+            outer: inputs,
+            norms: outputs,
+            inner: 1,
+        };
+        let g = self.parameters.push(normed, init);
+        let bias = match self.init {
+            config::Init::Torch => init,
+            config::Init::Scaled => Init::Zero,
+        };
+        let bias = self.parameters.push(Stretch::Plain(outputs), bias);
         for (name, first) in [("fc_mu", 0), ("fc_logvar", latent)] {
             let row = outputs as isize;
             let axes = [
@@ -211,9 +225,8 @@ impl Builder {
             norms: outputs,
             inner: 1,
         };
-        let g = self
-            .parameters
-            .push(normed, uniform(gain(activation), latent));
+        let init = self.uniform(activation, latent, latent);
+        let g = self.parameters.push(normed, init);
         let by_place = [(channels, 1), (places, channels as isize)];
         let axes = [by_place[0], by_place[1], (latent, outputs as isize)];
         self.parameters

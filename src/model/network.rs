@@ -48,12 +48,14 @@ pub enum Init {
     Uniform(f32),
     /// All zero.
     Zero,
-    /// `[A_k | B_k]` with A near the identity: rows of `latent` after `latent`, each of `columns`.
-    NearIdentity {
+    /// `[A_k | B_k]` with A the identity: rows of `latent` after `latent`, each of `columns`.
+    Bases {
         /// Z.
         latent: usize,
         /// Z and the control's numbers.
         columns: usize,
+        /// A and B are disturbed by up to this much either way; without it A is exact, and B uniform in [0, 1).
+        disturbed: Option<f32>,
     },
 }
 
@@ -113,9 +115,18 @@ impl Parameters {
                     .map(|i| match *init {
                         Init::Uniform(bound) => rng.random_range(-bound..=bound),
                         Init::Zero => 0.0,
-                        Init::NearIdentity { latent, columns } => {
+                        Init::Bases {
+                            latent,
+                            columns,
+                            disturbed,
+                        } => {
                             let (row, column) = (i / columns % latent, i % columns);
-                            f32::from(row == column) + rng.random_range(-0.1..=0.1)
+                            let identity = f32::from(row == column);
+                            match disturbed {
+                                Some(bound) => identity + rng.random_range(-bound..=bound),
+                                None if column < latent => identity,
+                                None => rng.random_range(0.0..1.0),
+                            }
                         }
                     })
                     .collect()

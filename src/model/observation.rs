@@ -139,13 +139,13 @@ pub fn channels_of(
     data.map(|data| (data, known(modality)))
 }
 
-/// What each expert of a model sees of one episode, belief by belief.
+/// What each stream of a model holds of one episode, belief by belief.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observations {
     /// Beliefs: the steps but the first `frame_stack`.
     pub beliefs: usize,
-    /// One an expert, `(beliefs, inputs)`, channels last.
-    pub experts: Vec<Vec<f32>>,
+    /// One a stream, `(beliefs, inputs)`, channels last.
+    pub streams: Vec<Vec<f32>>,
     /// `(beliefs - 1, U)`: row i acts from belief i to i + 1.
     pub controls: Vec<[f32; 2]>,
 }
@@ -200,12 +200,12 @@ pub fn observe(config: &Config, episode: &Episode) -> Result<Observations, Obser
             format!("{}", episode.steps()),
         ));
     }
-    let experts = config
-        .experts
-        .iter()
-        .map(|&expert| match expert {
+    let streams = config
+        .streams()
+        .into_iter()
+        .map(|stream| match stream {
             Expert::Vision => frames(episode, stack),
-            _ => windows(config, expert, episode, stack),
+            _ => windows(config, stream, episode, stack),
         })
         .collect();
     let controls = episode
@@ -217,7 +217,7 @@ pub fn observe(config: &Config, episode: &Episode) -> Result<Observations, Obser
         .collect();
     Ok(Observations {
         beliefs,
-        experts,
+        streams,
         controls,
     })
 }

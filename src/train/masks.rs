@@ -14,6 +14,14 @@ const REDRAW: f64 = 0.2;
 /// A redraw takes the empty set with this probability, else any of them alike.
 const NOTHING: f64 = 0.5;
 
+/// From a random belief on, but the first, no sensor: what is decoded there is a rollout.
+pub fn roll_out(sets: &mut [ExpertSet], rng: &mut impl Rng) {
+    if sets.len() > 1 {
+        let from = rng.random_range(1..sets.len());
+        sets[from..].fill(ExpertSet(0));
+    }
+}
+
 /// The set of sensor experts at each of `beliefs` steps, of `experts` in all.
 pub fn path(experts: usize, beliefs: usize, rng: &mut impl Rng) -> Vec<ExpertSet> {
     let full = ExpertSet::full(experts);
@@ -41,6 +49,17 @@ mod tests {
     use rand::SeedableRng;
 
     use super::*;
+
+    #[test]
+    fn a_rollout_has_seen_something_and_lasts_to_the_end() {
+        let mut rng = rand_chacha::ChaCha8Rng::seed_from_u64(3);
+        for _ in 0..200 {
+            let mut sets = vec![ExpertSet(3); 5];
+            roll_out(&mut sets, &mut rng);
+            assert_eq!((sets[0], sets[4]), (ExpertSet(3), ExpertSet(0)));
+            assert!(sets.windows(2).all(|pair| pair[0].0 >= pair[1].0));
+        }
+    }
 
     #[test]
     fn half_of_the_paths_are_full_and_every_set_occurs() {

@@ -1,9 +1,9 @@
 //! What a model takes from its training set before the first update: the scaling of its channels and the weights of
-//! its error terms (`standard` in the dataset format).
+//! its error terms (`released` and `standard` in the dataset format).
 
 use super::totals::Totals;
 use crate::modality::{Expert, Modality};
-use crate::model::config::Config;
+use crate::model::config::{Config, Scaling};
 use crate::model::observation::known;
 
 /// A channel's scale is at least this: 0.1 N and 0.01 N·m, 1 mm and 1 mm/s, so that a channel that never moves is not
@@ -15,46 +15,47 @@ pub fn complete(config: &mut Config, totals: &Totals) {
     if config.step_secs.is_none() {
         config.step_secs = totals.step_secs;
     }
-    for (modality, floors) in [
-        (Modality::Haptic, &FLOORS[0]),
-        (Modality::Proprio, &FLOORS[1]),
-    ] {
-        let channels = if modality == Modality::Haptic {
-            &mut config.haptic
-        } else {
-            &mut config.proprio
-        };
-        if channels.mean.is_empty() {
-            let moments = totals.moments(modality);
-            let at: Vec<usize> = channels
-                .columns(known(modality))
-                .map(|(at, _, _)| at)
-                .collect();
-            channels.mean = at.iter().map(|&at| moments[at].0 as f32).collect();
-            channels.scale = at
-                .iter()
-                .map(|&at| (moments[at].1 as f32).max(floors[at]))
-                .collect();
+    let (scaling, force) = (config.training.scaling, config.training.force_scale);
+    let each = [
+        (&mut config.haptic, Modality::Haptic, &FLOORS[0], force),
+        (&mut config.proprio, Modality::Proprio, &FLOORS[1], 1.0),
+    ];
+    for (channels, modality, floors, constant) in each {
+        if !channels.mean.is_empty() {
+            continue;
         }
+        let at: Vec<usize> = channels
+            .columns(known(modality))
+            .map(|(at, _, _)| at)
+            .collect();
+        if scaling == Scaling::Released {
+            channels.mean = vec![0.0; at.len()];
+            channels.scale = vec![constant; at.len()];
+            continue;
+        }
+        let moments = totals.moments(modality);
+        channels.mean = at.iter().map(|&at| moments[at].0 as f32).collect();
+        channels.scale = at
+            .iter()
+            .map(|&at| (moments[at].1 as f32).max(floors[at]))
+            .collect();
     }
     if config.training.error_weights.is_empty() {
-        let at_mean = error_at_the_mean(config, totals);
-        let windows: f64 = at_mean[1..].iter().sum();
-        // All windows together count as much as the frame, at the predictor that always says the mean.
-        let shared = if windows > 0.0 {
-            (at_mean[0] / windows) as f32
-        } else {
-            1.0
-        };
-        let weight = |&expert: &Expert| {
-            if expert == Expert::Vision {
-                1.0
-            } else {
-                shared
-            }
-        };
-        config.training.error_weights = config.experts.iter().map(weight).collect();
+        config.training.error_weights = error_weights(config, totals);
     }
+}
+
+/// 1 for every stream as released; else all windows together count as much as the frame, at the predictor that always
+/// says the mean.
+fn error_weights(config: &Config, totals: &Totals) -> Vec<f32> {
+    let at_mean = error_at_the_mean(config, totals);
+    let windows: f64 = at_mean[1..].iter().sum();
+    if config.training.scaling == Scaling::Released || windows <= 0.0 {
+        return vec![1.0; at_mean.len()];
+    }
+    let shared = (at_mean[0] / windows) as f32;
+    let weights = std::iter::once(1.0).chain(std::iter::repeat(shared));
+    weights.take(at_mean.len()).collect()
 }
 
 /// Squared error a belief of each expert's term at the predictor that always says the mean: what the weights balance.
@@ -63,7 +64,7 @@ pub fn error_at_the_mean(config: &Config, totals: &Totals) -> Vec<f64> {
         Expert::Vision => totals.frame_variance() * (config.frame_stack + 1) as f64,
         _ => window_variance(config, expert, totals),
     };
-    config.experts.iter().map(each).collect()
+    config.streams().iter().map(each).collect()
 }
 
 /// Σ over samples and channels of a window's scaled variance.

@@ -8,10 +8,13 @@ use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::batch::Batch;
+use super::schedule::{Phase, Stage};
+use crate::model::config::Clipped;
+use crate::model::encoder::Encoder;
 use crate::model::filter::{self, Inputs};
 use crate::model::gaussian::DiagGaussian;
 use crate::model::kernel::adam::{self, Moments};
-use crate::model::{Model, elbo};
+use crate::model::{Model, Weights, elbo};
 
 /// What an update minimised, each a mean over beliefs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -62,30 +65,66 @@ pub struct Terms {
     pub kl_per_latent: Vec<f32>,
 }
 
-/// The loss of a batch, with gradients where `train`.
-pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<Terms, TrainError> {
-    let config = &model.config;
-    let weights = model.weights()?;
+/// Every expert at every belief, `(B, T, Z)` each. Beliefs at which an expert is off are not encoded.
+fn encode(
+    model: &Model,
+    weights: &Weights,
+    batch: &Batch,
+    train: bool,
+) -> Result<Vec<DiagGaussian>, TrainError> {
     let (b, t) = (batch.episodes, batch.beliefs);
+    let mut streams = batch.seen.as_slice();
     let mut experts = Vec::new();
-    for ((encoder, weights), seen) in model
-        .encoders
-        .iter()
-        .zip(&weights.encoders)
-        .zip(&batch.seen)
-    {
-        let g = encoder.encode(seen, weights, train)?;
-        let shape = |x: &Tensor| x.reshape((b, t, config.latent));
-        experts.push(DiagGaussian {
-            mean: shape(&g.mean)?,
-            log_var: shape(&g.log_var)?,
-        });
+    for (i, encoder) in model.encoders.iter().enumerate() {
+        let (seen, rest) = streams.split_at(encoder.streams());
+        streams = rest;
+        let weights = &weights.encoders[i];
+        let said = match &batch.sensed[i] {
+            None => encoder.encode(seen, weights, train)?,
+            Some(rows) => encode_some(encoder, seen, weights, rows, train)?,
+        };
+        experts.push(said.reshape((b, t, model.config.latent))?);
     }
+    Ok(experts)
+}
+
+/// `encoder` at some rows; elsewhere, where its α is 0, what it says of the first of them.
+fn encode_some(
+    encoder: &Encoder,
+    seen: &[Tensor],
+    weights: &[Tensor],
+    rows: &[u32],
+    train: bool,
+) -> Result<DiagGaussian, TrainError> {
+    let device = seen[0].device();
+    let rows = if rows.is_empty() { &[0] } else { rows };
+    let mut places = vec![0_u32; seen[0].dim(0)?];
+    for (place, &row) in (0..).zip(rows) {
+        places[row as usize] = place;
+    }
+    let places = Tensor::new(places, device)?;
+    let rows = Tensor::new(rows, device)?;
+    let seen = seen
+        .iter()
+        .map(|seen| seen.index_select(&rows, 0))
+        .collect::<candle_core::Result<Vec<_>>>()?;
+    let said = encoder.encode(&seen, weights, train)?;
+    Ok(DiagGaussian {
+        mean: said.mean.index_select(&places, 0)?,
+        log_var: said.log_var.index_select(&places, 0)?,
+    })
+}
+
+/// The loss of a batch, with gradients where `train`, and its terms.
+pub fn loss(model: &Model, batch: &Batch, phase: &Phase, train: bool) -> Result<Terms, TrainError> {
+    let (config, training) = (&model.config, &model.config.training);
+    let weights = model.weights()?;
+    let experts = encode(model, &weights, batch, train)?;
     let inputs = Inputs {
         experts: &experts,
         alphas: &batch.alphas,
         controls: &batch.controls,
-        noise: train.then_some(&batch.noise),
+        noise: (train && training.sampled).then_some(&batch.noise),
     };
     let filtered = filter::filter(
         &model.dynamics,
@@ -93,44 +132,59 @@ pub fn loss(model: &Model, batch: &Batch, train: bool) -> Result<Terms, TrainErr
         inputs,
         config.prior_expert,
     )?;
-    let plain_kl = elbo::kl(&filtered)?.mean_all()?;
+    let plain_kl = filtered.posterior.kl(&filtered.prior)?.mean_all()?;
     let kl_per_latent = elbo::kl_per_latent(&filtered)?.mean((0, 1))?.to_vec1()?;
-    let mut kl = plain_kl.clone();
-    let steps = config.training.n_step;
+    let mut kl = elbo::kl(&filtered, training.kl_balance)?.mean_all()?;
     for term in elbo::overshooting(
         &model.dynamics,
         &weights.dynamics,
         &filtered,
         &batch.controls,
-        steps,
+        phase.n_step,
+        training.kl_balance,
     )? {
         kl = (kl + term.mean_all()?)?;
     }
-    let mut total = kl.affine(config.training.kl_weight, 0.0)?;
+    let mut total = kl.affine(phase.kl_weight, 0.0)?;
     let latents = filtered.z.flatten(0, 1)?;
+    let rows = batch
+        .decoded
+        .as_deref()
+        .map(|rows| Tensor::new(rows, latents.device()))
+        .transpose()?;
+    let decoded = |all: &Tensor| match &rows {
+        Some(rows) => all.index_select(rows, 0),
+        None => Ok(all.clone()),
+    };
+    let latents = decoded(&latents)?;
+    let count = latents.dim(0)?;
     let mut losses = Losses {
         kl: plain_kl.to_scalar()?,
         ..Losses::default()
     };
     losses.negative_elbo = losses.kl;
     for (i, decoder) in model.decoders.iter().enumerate() {
-        let weight = config.training.error_weights.get(i).copied().unwrap_or(1.0);
-        let each = vec![weight / (b * t) as f32; b * t];
+        let weight = training.error_weights.get(i).copied().unwrap_or(1.0);
+        let weight = weight * training.error_weight as f32;
+        if weight == 0.0 {
+            continue;
+        }
+        let seen = decoded(&batch.seen[i])?;
+        let each = vec![weight / count as f32; count];
         let (error, per_belief) =
-            decoder.squared_error(&latents, &weights.decoders[i], &batch.seen[i], each, train)?;
+            decoder.squared_error(&latents, &weights.decoders[i], &seen, each, train)?;
         total = (total + error)?;
         let per_belief = per_belief
             .lock()
             .unwrap_or_else(std::sync::PoisonError::into_inner);
-        let mean = per_belief.iter().sum::<f32>() / per_belief.len() as f32;
+        let mean = per_belief.iter().sum::<f32>() / count as f32;
         *(if i == 0 {
             &mut losses.vision
         } else {
             &mut losses.windows
         }) += mean;
         // −ln N(x; x̂, ½ I) = ‖x − x̂‖² + D/2 ln π.
-        losses.negative_elbo +=
-            mean + batch.seen[i].dim(1)? as f32 * 0.5 * std::f32::consts::PI.ln();
+        losses.negative_elbo += mean + seen.dim(1)? as f32 * 0.5 * std::f32::consts::PI.ln();
     }
     losses.loss = total.to_scalar()?;
     Ok(Terms {
@@ -153,8 +207,8 @@ pub struct Gradients {
 }
 
 /// Differentiates the loss of a batch.
-pub fn gradients(model: &Model, batch: &Batch) -> Result<Gradients, TrainError> {
-    let terms = loss(model, batch, true)?;
+pub fn gradients(model: &Model, batch: &Batch, phase: &Phase) -> Result<Gradients, TrainError> {
+    let terms = loss(model, batch, phase, true)?;
     let mut gradients = Gradients {
         losses: terms.losses,
         kl_per_latent: terms.kl_per_latent,
@@ -185,27 +239,40 @@ impl Gradients {
         Some(format!("the gradient of `{network}` (norm {norm})"))
     }
 
-    /// One update of every network: clip, Adam.
+    /// One update of every network that this phase trains: clip, Adam.
     pub fn apply(
         &self,
         model: &Model,
         moments: &mut BTreeMap<String, Moments>,
-        rate: f64,
+        phase: &Phase,
     ) -> Result<(), TrainError> {
         let Some(of_theta) = &self.of_theta else {
             return Ok(());
         };
-        let trained = model
+        let training = &model.config.training;
+        let differentiated = model
             .networks()
             .filter_map(|network| Some((network, of_theta.get(network.theta())?)));
-        for ((network, gradient), (_, norm)) in trained.zip(&self.norms) {
+        for ((network, gradient), (_, norm)) in differentiated.zip(&self.norms) {
+            let dynamics = network.name == model.dynamics.network.name;
+            let gradient = match phase.stage {
+                Stage::Autoencoder if dynamics => continue,
+                // Where the gradient and its moments are zero, Adam leaves a number where it is.
+                Stage::Bases if dynamics => &(gradient * model.dynamics.bases_mask()?)?,
+                _ => gradient,
+            };
+            let clip = if dynamics || training.clipped == Clipped::All {
+                training.clip
+            } else {
+                f32::INFINITY
+            };
             adam::update(
                 network.theta(),
                 gradient,
                 *norm,
                 moments.entry(network.name.clone()).or_default(),
-                rate,
-                model.config.training.clip,
+                phase.rate,
+                clip,
             )?;
         }
         Ok(())

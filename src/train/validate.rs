@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::batch::Batch;
+use super::schedule::Phase;
 use super::step::{self, Losses};
 use crate::data::Episodes;
 use crate::episode::Episode;
@@ -30,6 +31,7 @@ const EPISODES: usize = 64;
 pub fn validate(model: &Model, val: Episodes) -> Result<Validation, TrainError> {
     let val = val.first(EPISODES);
     let inspector = Inspector::new(model)?;
+    let phase = Phase::of(&model.config.training, 0, 1, 1.0);
     let mut validation = Validation::default();
     let mut seen = 0;
     // In batches, so that memory does not grow with the number of episodes.
@@ -39,7 +41,12 @@ pub fn validate(model: &Model, val: Episodes) -> Result<Validation, TrainError> 
             .map(|i| val.get(i))
             .collect::<Result<Vec<_>, _>>()?;
         let part: Vec<&Episode> = part.iter().map(AsRef::as_ref).collect();
-        let terms = step::loss(model, &Batch::new(&model.config, &part, None)?, false)?;
+        let terms = step::loss(
+            model,
+            &Batch::new(&model.config, &part, None)?,
+            &phase,
+            false,
+        )?;
         let losses = validation.losses;
         validation.losses = losses.towards(terms.losses, part.len() as f32 / end as f32);
         let share = part.len() as f64 / val.len() as f64;

@@ -124,7 +124,7 @@ fn a_model_that_is_not_there() {
     complaint(&arguments, &["nothing to resume", "No such file"]);
     arguments[1] = "--model".as_ref();
     arguments.insert(2, "vph".as_ref());
-    complaint(&arguments, &["no model \"vph\"", "vhp, v-h-p"]);
+    complaint(&arguments, &["no model \"vph\"", "vhp-c, v-h-p"]);
 }
 
 #[test]

@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 
 use candle_core::{DType, Device, Tensor};
 use poescope::episode::{HAPTIC_CHANNELS, PROPRIO_CHANNELS};
-use poescope::model::config::Config;
+use poescope::model::config::{Config, Preset};
+use poescope::model::encoder::Encoder;
 use poescope::model::filter::{self, Filtered, Inputs};
 use poescope::model::gaussian::DiagGaussian;
 use poescope::model::kernel::adam::{self, Moments};
@@ -76,8 +77,7 @@ fn number(network: &str, name: &str, t: u64, i: usize) -> f64 {
 
 /// The model with the formula's weights.
 fn model() -> Model {
-    let mut config = Config::named("vhp").unwrap();
-    config.training.n_step = 2;
+    let config = Config::preset("vhp", Preset::Released).unwrap();
     let model = Model::new(config, 0, &Device::Cpu).unwrap();
     let order: HashMap<(String, String), u64> = reference()["tensors"]
         .as_array()
@@ -151,22 +151,12 @@ fn observations() -> (Vec<Tensor>, Tensor) {
 }
 
 fn encode(model: &Model, weights: &Weights, seen: &[Tensor], train: bool) -> Vec<DiagGaussian> {
-    let encode =
-        |((encoder, weights), seen): ((&poescope::model::encoder::Encoder, &Tensor), &Tensor)| {
-            let g = encoder.encode(seen, weights, train).unwrap();
-            let shape = |x: &Tensor| x.reshape((BATCH, STEPS, LATENT)).unwrap();
-            DiagGaussian {
-                mean: shape(&g.mean),
-                log_var: shape(&g.log_var),
-            }
-        };
-    model
-        .encoders
-        .iter()
-        .zip(&weights.encoders)
-        .zip(seen)
-        .map(encode)
-        .collect()
+    let encode = |((encoder, weights), seen): ((&Encoder, &Vec<Tensor>), &Tensor)| {
+        let said = encoder.encode(std::slice::from_ref(seen), weights, train);
+        said.unwrap().reshape((BATCH, STEPS, LATENT)).unwrap()
+    };
+    let encoders = model.encoders.iter().zip(&weights.encoders);
+    encoders.zip(seen).map(encode).collect()
 }
 
 /// α with expert `off` off within `steps`.
@@ -311,7 +301,7 @@ fn filters_agree_with_all_experts_and_with_some_switched_off() {
         };
         close(name, &part(0, LATENT), &theirs["A_first8"], 2e-5, 0.0);
         close(name, &part(LATENT, 2), &theirs["B_first8"], 2e-5, 0.0);
-        let kl = elbo::kl(&ours).unwrap().sum(0).unwrap();
+        let kl = elbo::kl(&ours, 0.5).unwrap().sum(0).unwrap();
         close(name, &kl, &theirs["kl_per_step_batch_sum"], 1e-4, 1e-5);
         let latents = ours.z.flatten(0, 1).unwrap();
         for (index, key) in [(0, "image_sse"), (1, "context_sse")] {
@@ -430,9 +420,16 @@ fn terms(model: &Model, seen: &[Tensor], controls: &Tensor, n_step: usize) -> [T
             .unwrap()
             .0
     };
-    let mut kl = elbo::kl(&ours).unwrap().mean_all().unwrap();
-    for term in
-        elbo::overshooting(&model.dynamics, &weights.dynamics, &ours, controls, n_step).unwrap()
+    let mut kl = elbo::kl(&ours, 0.5).unwrap().mean_all().unwrap();
+    for term in elbo::overshooting(
+        &model.dynamics,
+        &weights.dynamics,
+        &ours,
+        controls,
+        n_step,
+        0.5,
+    )
+    .unwrap()
     {
         kl = (kl + term.mean_all().unwrap()).unwrap();
     }

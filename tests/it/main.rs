@@ -9,6 +9,7 @@ mod data;
 mod errors;
 mod golden;
 mod info;
+mod models;
 mod opening;
 mod pipeline;
 mod portable;

@@ -48,7 +48,11 @@ pub fn write(
     let probe = fit_probe(model, sets, folder)?;
     write_mean_frame(model, totals, folder)?;
     let config = &model.config;
-    let names: Vec<&str> = config.experts.iter().map(|expert| expert.name()).collect();
+    let names: Vec<&str> = config
+        .streams()
+        .iter()
+        .map(|stream| stream.name())
+        .collect();
     let at_mean = statistics::error_at_the_mean(config, totals);
     let error_at_mean: Vec<Value> = names
         .iter()

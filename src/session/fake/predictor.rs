@@ -111,7 +111,7 @@ impl FakePredictor {
             Expert::Vision => [-7.0, -6.0, -1.0, 0.5],
             Expert::Haptic => [-5.0, -6.5, 0.0, 0.0],
             Expert::Proprio => [-6.0, -5.0, 0.5, -0.5],
-            Expert::Joint | Expert::Prior => [-6.0, -6.0, 0.0, 0.0],
+            Expert::Joint | Expert::Concat | Expert::Prior => [-6.0, -6.0, 0.0, 0.0],
         };
         let mut trace = GaussianTrace {
             latent: LATENT,
