@@ -46,8 +46,8 @@ use restore::Restoration;
 use settings::{History, Settings};
 use snapshot::{Message, ModelInfo, Snapshot};
 use switches::Switches;
-pub use worker::THREAD;
 use worker::{Answer, Opened, Request, Shared, Target};
+pub use worker::{Found, THREAD};
 
 use crate::episode::EpisodeSource;
 

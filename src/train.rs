@@ -211,8 +211,9 @@ fn drive(
                 state.moments.clear();
             }
         }
+        let differentiating = Instant::now();
         let gradients = step::gradients(model, &batch, &phase)?;
-        let mut stepping = started.elapsed() - waited;
+        let mut stepping = differentiating.elapsed();
         if let Some(what) = gradients.not_finite() {
             return Err(TrainError::NotFinite {
                 update: state.update,

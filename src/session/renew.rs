@@ -4,7 +4,7 @@ use std::sync::{Arc, PoisonError};
 
 use super::Session;
 use super::predict::Predictor;
-use super::worker::Shared;
+use super::worker::{Found, Shared};
 
 /// Hands newer models to a session, from another thread.
 #[derive(Clone)]
@@ -13,7 +13,7 @@ pub struct Renewal(Arc<Shared>);
 impl Renewal {
     /// Puts a newer one in the place of model `index`, or tells why it cannot be had. The face is woken, and takes it
     /// in when it next looks; of several until then the newest counts.
-    pub fn offer(&self, index: usize, found: Result<Box<dyn Predictor>, String>) {
+    pub fn offer(&self, index: usize, found: Found) {
         let mut renewed = self
             .0
             .renewed

@@ -90,6 +90,9 @@ impl Answer {
 /// Called on the worker's thread after each publication.
 pub type Waker = Box<dyn Fn() + Send>;
 
+/// A newer model, or why it cannot be had.
+pub type Found = Result<Box<dyn Predictor>, String>;
+
 /// What both threads hold.
 #[derive(Default)]
 pub struct Shared {
@@ -101,8 +104,8 @@ pub struct Shared {
     pub waker: Mutex<Option<Waker>>,
     /// To the worker, before its next request: models that take the place of others.
     pub successors: Mutex<BTreeMap<usize, Box<dyn Predictor>>>,
-    /// To the session, from whoever watches a model for a newer one, or why it cannot be had.
-    pub renewed: Mutex<BTreeMap<usize, Result<Box<dyn Predictor>, String>>>,
+    /// To the session, from whoever watches its models.
+    pub renewed: Mutex<BTreeMap<usize, Found>>,
 }
 
 impl Shared {

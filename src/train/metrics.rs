@@ -100,7 +100,9 @@ impl Meter {
         for norm in gradient_norm.values_mut() {
             norm.mean /= n;
         }
-        kl_per_latent.iter_mut().for_each(|kl| *kl /= n);
+        for kl in &mut kl_per_latent {
+            *kl /= n;
+        }
         Summary {
             updates,
             secs_per_update: stepping.as_secs_f64() / n,

@@ -7,10 +7,10 @@ use std::thread::Builder;
 use std::time::{Duration, SystemTime};
 
 use crate::model::checkpoint::{self, CONFIG, PROBE, WEIGHTS};
+use crate::session::Found;
 use crate::session::predict::Predictor;
 use crate::session::renew::Renewal;
 use crate::session::trained::Trained;
-use crate::train::state::STATE;
 
 /// Time between two looks at the files.
 pub const PERIOD: Duration = Duration::from_secs(2);
@@ -28,17 +28,18 @@ pub struct Watched {
 }
 
 impl Watched {
-    /// A folder that a training run writes to, as it is before its checkpoint is read; none for any other.
+    /// A training run's folder, as it is before its checkpoint is read; none for weights that are of no run.
     pub fn new(index: usize, folder: &Path) -> Option<Self> {
-        folder.join(STATE).exists().then(|| Self {
+        let stamp = stamp(folder);
+        checkpoint::update_of(folder).map(|_| Self {
             index,
             folder: folder.to_owned(),
-            stamp: stamp(folder),
+            stamp,
         })
     }
 
     /// What has been written since the last look; none if nothing was.
-    fn look(&mut self) -> Option<Result<Box<dyn Predictor>, String>> {
+    fn look(&mut self) -> Option<Found> {
         let stamp = stamp(&self.folder);
         if stamp == self.stamp {
             return None;
@@ -120,12 +121,11 @@ mod tests {
         let save = |seed, update| {
             let config = Config::named("v").unwrap();
             let model = Model::new(config, seed, &Device::Cpu).unwrap();
-            checkpoint::save(&model, run.path(), DType::F16, Some(update)).unwrap();
+            checkpoint::save(&model, run.path(), DType::F16, update).unwrap();
         };
-        save(1, 30);
-        assert!(Watched::new(0, run.path()).is_none(), "no run writes there");
-        std::fs::write(run.path().join(STATE), "").unwrap();
-
+        save(1, None);
+        assert!(Watched::new(0, run.path()).is_none(), "of no run");
+        save(1, Some(30));
         let watched = Watched::new(0, run.path()).unwrap();
         let mut session = Session::new(
             Arc::new(FakeSource::new(3)),
@@ -141,7 +141,7 @@ mod tests {
         let follower = Follower::start(vec![watched], Duration::from_millis(5), session.renewal());
         let _follower = follower.unwrap();
 
-        save(2, 60);
+        save(2, Some(60));
         while session.snapshot().models[0].update != Some(60) {
             woken.recv_timeout(patience).unwrap();
             session.update(Duration::ZERO);
