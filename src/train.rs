@@ -29,6 +29,7 @@ use self::metrics::Meter;
 use self::schedule::Phase;
 use self::state::State;
 use self::step::Losses;
+use self::tensorboard::EventWriter;
 use self::validate::Validation;
 use crate::data::{DataError, Episodes};
 use crate::episode::Episode;
@@ -179,6 +180,7 @@ fn drive(
     let mut running: Option<Losses> = None;
     let mut meter = Meter::default();
     let mut saved: Option<Instant> = None;
+    let mut events = EventWriter::append(run.folder, state.update + 1)?;
     loop {
         let fraction = budget.fraction(state.update, epoch_updates, state.elapsed);
         if fraction >= 1.0 || run.stop.load(Ordering::Relaxed) {
@@ -232,13 +234,14 @@ fn drive(
         stepping += applying.elapsed();
         meter.add(&gradients, stepping, waited);
         state.update += 1;
+        state.average(model)?;
         let losses = running.map_or(gradients.losses, |running| {
             running.towards(gradients.losses, 0.05)
         });
         running = Some(losses);
         let mut validation = None;
         if state.update.is_multiple_of(epoch_updates) {
-            let scores = validate::validate(model, run.val)?;
+            let scores = validate::validate(state.kept(model), run.val)?;
             if !scores.losses.is_finite() {
                 return Err(TrainError::NotFinite {
                     update: state.update - 1,
@@ -259,7 +262,7 @@ fn drive(
                 meter: meter.take(),
                 val: scores.clone(),
             };
-            metrics::log(run.folder, &line)?;
+            metrics::log(run.folder, &mut events, &line)?;
         }
         report(&Progress {
             update: state.update,

@@ -96,7 +96,14 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     bar.finish_and_clear();
     if state.update > 0 {
         eprintln!("saved {}; fitting the position probe", args.out.display());
-        finish::write(&model, &sets, &totals, &state, &dataset, &args.out)?;
+        finish::write(
+            state.kept(&model),
+            &sets,
+            &totals,
+            &state,
+            &dataset,
+            &args.out,
+        )?;
     }
     match outcome {
         Outcome::Finished => eprintln!("trained: {}", args.out.display()),

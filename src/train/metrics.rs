@@ -3,12 +3,13 @@
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::step::{Gradients, Losses};
+use super::tensorboard::EventWriter;
 use super::validate::Validation;
 use crate::model::checkpoint::{self, CheckpointError};
 
@@ -113,8 +114,42 @@ impl Meter {
     }
 }
 
-/// Logs an epoch: the one place that every scalar passes.
-pub fn log(folder: &Path, line: &Line) -> Result<(), TrainError> {
+impl Line {
+    /// The same as TensorBoard's tags and values.
+    fn scalars(&self) -> BTreeMap<String, f32> {
+        let mut all = BTreeMap::new();
+        for (split, losses) in [("train", self.train), ("val", self.val.losses)] {
+            for (name, value) in losses.named() {
+                all.insert(format!("{split}/{name}"), value);
+            }
+        }
+        let psnr_db = &self.val.psnr_db;
+        let mean = psnr_db.iter().sum::<f64>() / psnr_db.len().max(1) as f64;
+        all.insert("val/open_loop_psnr_db".to_owned(), mean as f32);
+        for (i, &kl) in self.val.kl_per_latent.iter().enumerate() {
+            all.insert(format!("kl_per_latent/{i:02}"), kl as f32);
+        }
+        for (network, norm) in &self.meter.gradient_norm {
+            all.insert(format!("gradient_norm/{network}"), norm.mean as f32);
+        }
+        all.insert("learning_rate".to_owned(), self.learning_rate as f32);
+        let meter = &self.meter;
+        all.insert(
+            "time/secs_per_update".to_owned(),
+            meter.secs_per_update as f32,
+        );
+        all.insert("time/waited_secs".to_owned(), meter.waited_secs as f32);
+        all
+    }
+}
+
+/// Logs an epoch, as a line of JSON and for TensorBoard: the one place that every scalar passes.
+pub fn log(folder: &Path, events: &mut EventWriter, line: &Line) -> Result<(), TrainError> {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
+    let wall_secs = now.map_or(0.0, |now| now.as_secs_f64());
+    let scalars = line.scalars();
+    let scalars = scalars.iter().map(|(tag, &value)| (tag.as_str(), value));
+    events.scalars(line.update, wall_secs, scalars)?;
     let path = folder.join(METRICS);
     let line = serde_json::json!(line);
     std::fs::OpenOptions::new()

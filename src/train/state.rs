@@ -12,6 +12,7 @@ use super::schedule::Budget;
 use crate::model::Model;
 use crate::model::checkpoint::{self, CheckpointError};
 use crate::model::kernel::adam::Moments;
+use crate::model::kernel::running_mean;
 
 /// The file that a run is resumed from.
 pub const STATE: &str = "state.safetensors";
@@ -42,6 +43,8 @@ pub struct State {
     pub elapsed: Duration,
     /// Adam's, by network.
     pub moments: BTreeMap<String, Moments>,
+    /// The running mean of the weights, where the config wants one.
+    pub mean: Option<Model>,
 }
 
 /// What is stored beside the tensors.
@@ -90,6 +93,30 @@ impl State {
         }
     }
 
+    /// The weights to look at and to score: their running mean where there is one, else `newest`.
+    pub fn kept<'a>(&'a self, newest: &'a Model) -> &'a Model {
+        self.mean.as_ref().unwrap_or(newest)
+    }
+
+    /// Takes the running mean along after an update: `training.average` of it stays, at first less, so that it soon
+    /// forgets the weights it began with.
+    pub fn average(&mut self, newest: &Model) -> Result<(), TrainError> {
+        let decay = newest.config.training.average;
+        if decay <= 0.0 {
+            return Ok(());
+        }
+        let mean = match &mut self.mean {
+            Some(mean) => mean,
+            none => none.insert(Model::blank(newest.config.clone(), &Device::Cpu)?),
+        };
+        let n = self.update as f64;
+        let part = 1.0 - decay.min((n - 1.0) / (n + 9.0));
+        for (mean, newest) in mean.networks().zip(newest.networks()) {
+            running_mean::towards(mean.theta(), newest.theta(), part as f32)?;
+        }
+        Ok(())
+    }
+
     /// Writes the state, and the weights as a checkpoint that can be looked at while the run goes on: in half
     /// precision, which costs a hundredth of a decibel at most. The state keeps every bit. Each file is replaced in
     /// one go, and none by numbers that are not finite.
@@ -104,11 +131,17 @@ impl State {
                 });
             }
         }
-        checkpoint::save(model, folder, DType::F16, Some(self.update))?;
+        checkpoint::save(self.kept(model), folder, DType::F16, Some(self.update))?;
         let mut tensors = Vec::new();
         for network in model.networks() {
             tensors.push((
                 format!("{}.theta", network.name),
+                network.theta().as_tensor().clone(),
+            ));
+        }
+        for network in self.mean.iter().flat_map(Model::networks) {
+            tensors.push((
+                format!("{}.mean", network.name),
                 network.theta().as_tensor().clone(),
             ));
         }
@@ -156,13 +189,22 @@ impl State {
                 .cloned()
                 .ok_or_else(|| refuse(format!("tensor `{name}` is missing")))
         };
-        for network in model.networks() {
-            let theta = numbers(&format!("{}.theta", network.name))?;
-            network
-                .theta()
-                .set(&theta)
-                .map_err(|error| refuse(checkpoint::first_line(&error)))?;
-        }
+        let fill = |model: &Model, kind: &str| -> Result<(), CheckpointError> {
+            for network in model.networks() {
+                let theta = numbers(&format!("{}.{kind}", network.name))?;
+                let set = network.theta().set(&theta);
+                set.map_err(|error| refuse(checkpoint::first_line(&error)))?;
+            }
+            Ok(())
+        };
+        fill(model, "theta")?;
+        let mean = if model.config.training.average > 0.0 && counters.update > 0 {
+            let mean = Model::blank(model.config.clone(), &Device::Cpu)?;
+            fill(&mean, "mean")?;
+            Some(mean)
+        } else {
+            None
+        };
         let mut moments = BTreeMap::new();
         for (name, updates) in counters.moment_updates {
             let first = numbers(&format!("{name}.first"))?.to_vec1()?;
@@ -183,6 +225,7 @@ impl State {
             update: counters.update,
             elapsed,
             moments,
+            mean,
         })
     }
 }

@@ -33,11 +33,20 @@ pub struct Losses {
 }
 
 impl Losses {
+    /// Each with its name in logs.
+    pub fn named(self) -> [(&'static str, f32); 5] {
+        [
+            ("loss", self.loss),
+            ("vision", self.vision),
+            ("windows", self.windows),
+            ("kl", self.kl),
+            ("negative_elbo", self.negative_elbo),
+        ]
+    }
+
     /// Whether every term is a number.
     pub fn is_finite(&self) -> bool {
-        [self.loss, self.vision, self.windows, self.kl]
-            .iter()
-            .all(|term| term.is_finite())
+        self.named().iter().all(|(_, term)| term.is_finite())
     }
 
     /// A running mean that goes `part` of the way to `newest`.
