@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use poescope::train::step;
 
 fn main() {
+    poescope::model::kernel::memory::keep_pages();
     let model = common::model("vhp");
     let batch = common::batch(&model, 32, 15);
     let mut moments = BTreeMap::new();

@@ -197,3 +197,46 @@ impl<M: Borrow<Model>> Inspector<M> {
         Ok(pixels.chunks_exact(side * side).map(frame).collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::config::Config;
+
+    #[test]
+    fn settings_have_the_same_bits_alone_and_together_and_a_switch_leaves_no_trace() -> Result<()> {
+        let config = Config::named("v-h-p").expect("a model");
+        let inspector = Inspector::new(Model::new(config, 3, &Device::Cpu)?)?;
+        let beliefs = 7;
+        let numbers = |n: usize, seed: f32| -> Vec<f32> {
+            (0..n)
+                .map(|i| ((i as f32 + seed) * 12.9898).sin())
+                .collect()
+        };
+        let expert = |seed: f32| GaussianTrace {
+            latent: 16,
+            mean: numbers(beliefs * 16, seed),
+            log_var: numbers(beliefs * 16, seed + 0.5),
+        };
+        let experts = ExpertTrace {
+            experts: [1.0, 2.0, 3.0].map(expert).to_vec(),
+            controls: numbers(2 * (beliefs - 1), 4.0).as_chunks().0.to_vec(),
+        };
+        let settings: Vec<Alphas> = (1..16_u32)
+            .map(|set| Alphas {
+                experts: 4,
+                values: (0..4)
+                    .map(|i| (set >> i & 1) as f32)
+                    .collect::<Vec<_>>()
+                    .repeat(beliefs),
+            })
+            .collect();
+        let together = inspector.filter_all(&experts, &settings)?;
+        assert_eq!(together.len(), 15);
+        for (setting, trace) in settings.iter().zip(&together) {
+            assert_eq!(&inspector.filter(&experts, setting)?, trace);
+        }
+        assert_ne!(together[0], together[14]);
+        Ok(())
+    }
+}

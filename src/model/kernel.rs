@@ -12,6 +12,7 @@ pub mod chain;
 pub mod gather;
 pub mod layer;
 pub mod matmul;
+pub mod memory;
 pub mod pointwise;
 pub mod recurrence;
 pub mod rows;

@@ -2,12 +2,18 @@
 
 use std::sync::Arc;
 
+use candle_core::backprop::GradStore;
 use candle_core::{Device, Var};
 
 use super::*;
+use crate::model::config::Config;
+use crate::model::dynamics::Dynamics;
+use crate::model::filter::{self as model_filter, Filtered, Inputs};
+use crate::model::gaussian::DiagGaussian;
 use crate::model::kernel::apply::Apply;
 use crate::model::kernel::cell::Cell;
 use crate::model::kernel::squared_error::SquaredError;
+use crate::model::network::Parameters;
 
 fn numbers(n: usize, seed: f32) -> Vec<f32> {
     (0..n)
@@ -175,6 +181,81 @@ fn the_cell_agrees_forward_and_backward() -> Result<()> {
             k.get(var).expect("a gradient"),
             1e-4,
         );
+    }
+    Ok(())
+}
+
+#[test]
+fn filters_agree_forward_and_backward_and_without_the_prior_expert() -> Result<()> {
+    let mut config = Config::named("vhp").expect("a model");
+    (config.latent, config.hidden, config.mixtures) = (4, 9, 3);
+    let mut draw = |p: &Parameters| numbers(p.norm.trained(), 5.0);
+    let dynamics = Dynamics::new(&config, "dyn", &mut draw, &Device::Cpu)?;
+    let (batch, steps) = (10, 5);
+    let tensor = |shape: &[usize], seed: f32| {
+        Tensor::from_vec(numbers(shape.iter().product(), seed), shape, &Device::Cpu)
+    };
+    let stated = [1.0, 2.0, 3.0, 4.0]
+        .map(|seed| Var::from_tensor(&tensor(&[batch, steps, 4], seed)?))
+        .into_iter()
+        .collect::<Result<Vec<_>>>()?;
+    let experts: Vec<DiagGaussian> = stated
+        .chunks_exact(2)
+        .map(|pair| DiagGaussian {
+            mean: pair[0].as_tensor().clone(),
+            log_var: pair[1].as_tensor().clone(),
+        })
+        .collect();
+    let mut alphas: Vec<f32> = (0..batch * steps)
+        .flat_map(|i| [[1.0, 1.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.5, 0.5]][i % 3])
+        .collect();
+    let shape = (batch, steps, 3);
+    let given = Tensor::from_vec(alphas.clone(), shape, &Device::Cpu)?;
+    let (controls, noise) = (
+        tensor(&[batch, steps - 1, 2], 6.0)?,
+        tensor(&[batch, steps, 4], 7.0)?,
+    );
+    let inputs = Inputs {
+        experts: &experts,
+        alphas: &given,
+        controls: &controls,
+        noise: Some(&noise),
+    };
+    for prior_expert in [true, false] {
+        let weights = dynamics.network.folded()?;
+        let ours = model_filter::filter(&dynamics, &weights, inputs, prior_expert)?;
+        model_filter::factors(&mut alphas, 3, prior_expert);
+        let factors = Tensor::from_vec(alphas.clone(), shape, &Device::Cpu)?;
+        let theirs = super::filter(&dynamics, &weights, inputs, &factors)?;
+        let all = |f: &Filtered| {
+            let parts = [
+                &f.prior.mean,
+                &f.prior.log_var,
+                &f.posterior.mean,
+                &f.posterior.log_var,
+                &f.z,
+                &f.hidden,
+            ];
+            Tensor::cat(&parts, 2)
+        };
+        let (ours, theirs) = (all(&ours)?, all(&theirs)?);
+        close(&ours, &theirs, 1e-5);
+        let (g, h) = (
+            ours.sqr()?.mean_all()?.backward()?,
+            theirs.sqr()?.mean_all()?.backward()?,
+        );
+        let theta = dynamics.network.theta();
+        for var in stated.iter().chain([theta]) {
+            let gradient =
+                |store: &GradStore| store.get(var.as_tensor()).expect("a gradient").clone();
+            close(&gradient(&g), &gradient(&h), 1e-5);
+        }
+        if !prior_expert {
+            // The second belief of the first sequence has no sensor: it is the prior.
+            let (prior, posterior) = (ours.narrow(2, 0, 8)?, ours.narrow(2, 8, 8)?);
+            let at = |x: Tensor| x.get(0)?.get(1);
+            close(&at(prior)?, &at(posterior)?, 1e-5);
+        }
     }
     Ok(())
 }
