@@ -122,6 +122,11 @@ impl Dynamics {
         Tensor::from_vec(mask, all, self.network.theta().device())
     }
 
+    /// Sizes of its cell.
+    pub(super) fn sizes(&self) -> Sizes {
+        self.sizes
+    }
+
     /// What is believed before anything is seen: the zero state and N(0, 20 I), for `batch` episodes.
     pub fn zero_state(&self, batch: usize, device: &Device) -> Result<Transition> {
         let mean = Tensor::zeros((batch, self.sizes.latent), candle_core::DType::F32, device)?;

@@ -2,9 +2,10 @@
 
 use candle_core::{Result, Tensor};
 
-use super::dynamics::{Dynamics, Transition};
-use super::experts::Evidence;
+use super::dynamics::{Dynamics, FIRST_VARIANCE};
+use super::fallback;
 use super::gaussian::DiagGaussian;
+use super::kernel::recurrence::{Kept, Recurrence, Row};
 
 /// Beliefs over an episode. Every tensor is `(B, T, …)`.
 #[derive(Clone, Debug)]
@@ -32,7 +33,19 @@ pub struct Inputs<'a> {
     pub noise: Option<&'a Tensor>,
 }
 
-/// Beliefs for every step. Where `prior_expert` is off the prior is stated but not multiplied in.
+/// The factors that experts are multiplied in with, made of `alphas`, the prior last in each row of `switches`. Where
+/// `prior_expert` is off the prior is stated but not multiplied in, unless no sensor is: it is all there is to believe.
+pub fn factors(alphas: &mut [f32], switches: usize, prior_expert: bool) {
+    if prior_expert {
+        return;
+    }
+    for row in alphas.chunks_exact_mut(switches) {
+        let (sensors, prior) = row.split_at_mut(switches - 1);
+        prior[0] = f32::from(sensors.iter().all(|&alpha| alpha == 0.0));
+    }
+}
+
+/// Beliefs for every step. Where `prior_expert` is off the prior is multiplied in only where no sensor is.
 pub fn filter(
     dynamics: &Dynamics,
     weights: &Tensor,
@@ -40,49 +53,41 @@ pub fn filter(
     prior_expert: bool,
 ) -> Result<Filtered> {
     let (batch, steps, switches) = inputs.alphas.dims3()?;
-    let alphas = (0..switches)
-        .map(|i| inputs.alphas.narrow(2, i, 1))
-        .collect::<Result<Vec<_>>>()?;
-    let sensors = Evidence::of(inputs.experts, &alphas)?;
-    let mut transition = dynamics.zero_state(batch, inputs.alphas.device())?;
-    let mut rows: [Vec<Tensor>; 6] = Default::default();
-    for t in 0..steps {
-        let Transition { hidden, prior } = &transition;
-        let sensed = sensors.as_ref().map(|sensors| sensors.at(t)).transpose()?;
-        let prior_alpha = alphas[switches - 1].narrow(1, t, 1)?.squeeze(1)?;
-        let believed = if prior_expert {
-            Evidence::of(std::slice::from_ref(prior), &[prior_alpha])?
-        } else {
-            None
-        };
-        let posterior = match (sensed, believed) {
-            (Some(sensed), Some(believed)) => sensed.and(&believed)?.belief()?,
-            (Some(only), None) | (None, Some(only)) => only.belief()?,
-            (None, None) => candle_core::bail!("a model without experts has no belief"),
-        };
-        let noise = inputs
-            .noise
-            .map(|noise| noise.narrow(1, t, 1)?.squeeze(1))
-            .transpose()?;
-        let z = posterior.draw(noise.as_ref())?;
-        let step = [
-            &prior.mean,
-            &prior.log_var,
-            &posterior.mean,
-            &posterior.log_var,
-            &z,
-            hidden,
-        ];
-        for (row, value) in rows.iter_mut().zip(step) {
-            row.push(value.clone());
-        }
-        if t + 1 < steps {
-            let u = inputs.controls.narrow(1, t, 1)?.squeeze(1)?;
-            transition = dynamics.step(hidden, &z, &u, weights)?;
-        }
+    let mut alphas = inputs.alphas.flatten_all()?.to_vec1()?;
+    factors(&mut alphas, switches, prior_expert);
+    if weights.device().is_cpu() {
+        return on_cpu(dynamics, weights, inputs, alphas);
     }
-    let [prior_mean, prior_log_var, mean, log_var, z, hidden] =
-        rows.map(|row| Tensor::stack(&row, 1));
+    let alphas = Tensor::from_vec(alphas, (batch, steps, switches), weights.device())?;
+    fallback::filter(dynamics, weights, inputs, &alphas)
+}
+
+fn on_cpu(
+    dynamics: &Dynamics,
+    weights: &Tensor,
+    inputs: Inputs,
+    alphas: Vec<f32>,
+) -> Result<Filtered> {
+    let stated: Vec<_> = inputs
+        .experts
+        .iter()
+        .flat_map(|expert| [&expert.mean, &expert.log_var])
+        .collect();
+    let op = Recurrence {
+        sizes: dynamics.sizes(),
+        alphas,
+        controls: inputs.controls.flatten_all()?.to_vec1()?,
+        noise: inputs
+            .noise
+            .map(|noise| noise.flatten_all()?.to_vec1())
+            .transpose()?,
+        first_log_var: FIRST_VARIANCE.ln() as f32,
+        kept: Kept::default(),
+    };
+    let rows = Tensor::stack(&stated, 0)?.apply_op2(weights, op)?;
+    let [prior_mean, prior_log_var, mean, log_var, z, hidden] = Row::of(dynamics.sizes())
+        .parts()
+        .map(|(start, len)| rows.narrow(2, start, len)?.contiguous());
     Ok(Filtered {
         prior: DiagGaussian {
             mean: prior_mean?,

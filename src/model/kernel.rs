@@ -12,7 +12,10 @@ pub mod chain;
 pub mod gather;
 pub mod layer;
 pub mod matmul;
+pub mod memory;
 pub mod pointwise;
+pub mod recurrence;
+pub mod rows;
 pub mod running_mean;
 pub mod squared_error;
 pub mod weight_norm;
@@ -24,7 +27,7 @@ use std::ffi::OsStr;
 use std::sync::OnceLock;
 
 use candle_core::backend::BackendStorage as _;
-use candle_core::{CpuStorage, Layout, Result, bail};
+use candle_core::{CpuStorage, Layout, Result, Tensor, bail};
 use pulp::Arch;
 
 /// The environment variable that forces the portable code path when set to anything but `0`.
@@ -58,6 +61,12 @@ fn vectorised<R>(f: impl FnMut() -> R) -> R {
         }
     }
     arch().dispatch(Inlined(f))
+}
+
+/// Calls `f` with the numbers of a contiguous f32 tensor on the CPU.
+pub fn read<R>(tensor: &Tensor, f: impl FnOnce(&[f32]) -> Result<R>) -> Result<R> {
+    let (guard, layout) = tensor.storage_and_layout();
+    f(chain::cpu(&guard, layout)?)
 }
 
 /// The numbers of a contiguous f32 tensor on the CPU.

@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use candle_core::{CpuStorage, CustomOp2, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
-use super::chain::{Chain, cpu, part_size, sum_parts};
+use super::chain::{Chain, cpu, part_size};
 use super::values;
 
 /// `(samples, inputs)` and `(parameters)` to `(samples, outputs)`.
@@ -115,12 +115,12 @@ impl CustomOp2 for Apply {
             .zip(dy_values.par_chunks(part * chain.outputs()))
             .zip(dx_parts)
             .map(|(((x, activations), dy), dx)| {
-                let mut dw = vec![0.0; chain.parameters()];
+                let mut dw = chain.take(chain.parameters());
                 chain.backward_part(x, w_values, activations, dy, &mut dw, dx);
                 dw
             })
             .collect();
-        let dw = Tensor::from_vec(sum_parts(gradients), w.shape(), w.device())?;
+        let dw = Tensor::from_vec(chain.sum_parts(gradients), w.shape(), w.device())?;
         let dx = self
             .input_gradient
             .then(|| Tensor::from_vec(dx, x.shape(), x.device()))

@@ -3,15 +3,22 @@
 //! `h' = GRU([x], h)`, `α = softmax(W_α h' + b_α)`, `mean = Σ_k α_k M_k x`, `log_var = W_σ h' + b_σ`, where x is the
 //! latent and the control side by side and `M_k = [A_k | B_k]`. Gates as in PyTorch: r, z, n, both biases.
 
-mod backward;
-mod forward;
+pub(super) mod backward;
+pub(super) mod forward;
 
 use std::sync::{Mutex, PoisonError};
 
 use candle_core::{CpuStorage, CustomOp3, Layout, Result, Shape, Tensor, bail};
+use rayon::prelude::*;
 
-use super::chain::cpu;
+use self::backward::{Pull, Rows, Transposes, Upstream};
+use self::forward::Tape;
+use super::chain::{cpu, part_size};
+use super::rows::transposed;
 use super::values;
+
+/// Fewer rows than this are not worth a second thread.
+const ROWS_APART: usize = 64;
 
 /// Sizes of the cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,7 +34,7 @@ pub struct Sizes {
 }
 
 /// Where the parts of the cell's weights lie, in order.
-struct Weights<'a> {
+pub(super) struct Weights<'a> {
     /// `(inputs, 3 hidden)`.
     input: &'a [f32],
     /// `(hidden, 3 hidden)`.
@@ -39,6 +46,8 @@ struct Weights<'a> {
     head_bias: &'a [f32],
     /// `(mixtures · latent, inputs)`.
     bases: &'a [f32],
+    /// Their transpose.
+    across_bases: Vec<f32>,
 }
 
 impl Sizes {
@@ -67,12 +76,8 @@ impl Sizes {
         self.hidden + 2 * self.latent
     }
 
-    fn weights<'a>(&self, mut flat: &'a [f32]) -> Weights<'a> {
-        let mut parts = self.parts().map(|len| {
-            let (part, rest) = flat.split_at(len);
-            flat = rest;
-            part
-        });
+    /// Where the parts of `flat` are.
+    pub(super) fn weights<'a>(&self, mut flat: &'a [f32]) -> Weights<'a> {
         let [
             input,
             recurrent,
@@ -81,7 +86,11 @@ impl Sizes {
             head,
             head_bias,
             bases,
-        ] = &mut parts;
+        ] = self.parts().map(|len| {
+            let (part, rest) = flat.split_at(len);
+            flat = rest;
+            part
+        });
         Weights {
             input,
             recurrent,
@@ -90,27 +99,35 @@ impl Sizes {
             head,
             head_bias,
             bases,
+            across_bases: transposed(bases, self.inputs),
         }
     }
-}
 
-/// What the backward pass needs of the forward one.
-#[derive(Default)]
-struct Kept {
-    /// r, z, n side by side, `(B, 3 hidden)`.
-    gates: Vec<f32>,
-    /// `W_hn h + b_hn`, `(B, hidden)`.
-    recurrent_n: Vec<f32>,
-    /// α, `(B, K)`.
-    mixture: Vec<f32>,
-    /// `M_k x`, `(B, K Z)`.
-    mapped: Vec<f32>,
+    /// Mixtures' logits and the log-variance, side by side.
+    fn head(&self) -> usize {
+        self.mixtures + self.latent
+    }
+
+    /// Numbers of every `M_k x`.
+    fn maps(&self) -> usize {
+        self.mixtures * self.latent
+    }
 }
 
 /// `(B, hidden)`, `(B, inputs)` and the flat weights to `(B, hidden + 2 Z)`: new state, mean, log-variance.
 pub struct Cell {
     sizes: Sizes,
-    kept: Mutex<Kept>,
+    /// One tape for the rows of each task.
+    tapes: Mutex<Vec<Tape>>,
+}
+
+/// Rows of each parallel task.
+fn rows_apart(rows: usize) -> usize {
+    if rows < ROWS_APART {
+        rows.max(1)
+    } else {
+        part_size(rows)
+    }
 }
 
 impl Cell {
@@ -118,8 +135,26 @@ impl Cell {
     pub fn new(sizes: Sizes) -> Self {
         Self {
             sizes,
-            kept: Mutex::default(),
+            tapes: Mutex::default(),
         }
+    }
+
+    /// New state, mean and log-variance of some rows, and what they leave for the backward pass.
+    fn forward(&self, h: &[f32], x: &[f32], w: &Weights, out: &mut [f32]) -> Tape {
+        let Sizes { latent, hidden, .. } = self.sizes;
+        let rows = x.len() / self.sizes.inputs;
+        let mut tape = Tape::new(self.sizes, rows);
+        let (mut state, mut mean) = (vec![0.0; h.len()], vec![0.0; rows * latent]);
+        let mut slices = tape.rows(self.sizes, 0..rows);
+        forward::step(self.sizes, w, h, x, &mut slices, &mut state, &mut mean);
+        let lines = state.chunks_exact(hidden).zip(mean.chunks_exact(latent));
+        let lines = lines.zip(slices.head.chunks_exact(self.sizes.head()));
+        for (out, ((state, mean), head)) in out.chunks_exact_mut(self.sizes.outputs()).zip(lines) {
+            out[..hidden].copy_from_slice(state);
+            out[hidden..hidden + latent].copy_from_slice(mean);
+            out[hidden + latent..].copy_from_slice(&head[self.sizes.mixtures..]);
+        }
+        tape
     }
 }
 
@@ -151,8 +186,16 @@ impl CustomOp3 for Cell {
                 w.len()
             );
         }
-        let (out, kept) = forward::step(self.sizes, h, x, w);
-        *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = kept;
+        let w = self.sizes.weights(w);
+        let rows = rows_apart(batch);
+        let mut out = vec![0.0; batch * self.sizes.outputs()];
+        let tapes = h
+            .par_chunks(rows * self.sizes.hidden)
+            .zip(x.par_chunks(rows * self.sizes.inputs))
+            .zip(out.par_chunks_mut(rows * self.sizes.outputs()))
+            .map(|((h, x), out)| self.forward(h, x, &w, out))
+            .collect();
+        *self.tapes.lock().unwrap_or_else(PoisonError::into_inner) = tapes;
         Ok((
             CpuStorage::F32(out),
             Shape::from((batch, self.sizes.outputs())),
@@ -168,25 +211,65 @@ impl CustomOp3 for Cell {
         dout: &Tensor,
     ) -> Result<(Option<Tensor>, Option<Tensor>, Option<Tensor>)> {
         let dout = dout.contiguous()?;
-        let kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        let (h_guard, h_layout) = h.storage_and_layout();
-        let (x_guard, x_layout) = x.storage_and_layout();
-        let (w_guard, w_layout) = w.storage_and_layout();
-        let (out_guard, out_layout) = out.storage_and_layout();
-        let (dout_guard, dout_layout) = dout.storage_and_layout();
-        let [dh, dx, dw] = backward::step(
-            self.sizes,
-            cpu(&h_guard, h_layout)?,
-            cpu(&x_guard, x_layout)?,
-            cpu(&w_guard, w_layout)?,
-            cpu(&out_guard, out_layout)?,
-            cpu(&dout_guard, dout_layout)?,
-            &kept,
-        );
+        let guards = [h, x, w, out, &dout].map(|tensor| tensor.storage_and_layout());
+        let [h_values, x_values, w_values, out_values, dout_values] =
+            guards.each_ref().map(|(guard, layout)| cpu(guard, layout));
+        let (h_values, x_values, out_values, dout_values) =
+            (h_values?, x_values?, out_values?, dout_values?);
+        let sizes = self.sizes;
+        let mut tapes = self.tapes.lock().unwrap_or_else(PoisonError::into_inner);
+        let w_parts = sizes.weights(w_values?);
+        let transposes = Transposes::of(sizes, &w_parts);
+        let (mut dh, mut dx) = (vec![0.0; h_values.len()], vec![0.0; x_values.len()]);
+        let rows = rows_apart(x_values.len() / sizes.inputs);
+        let pulled: Vec<(Pull, Vec<f32>)> = tapes
+            .par_iter_mut()
+            .zip(h_values.par_chunks(rows * sizes.hidden))
+            .zip(out_values.par_chunks(rows * sizes.outputs()))
+            .zip(dout_values.par_chunks(rows * sizes.outputs()))
+            .zip(dh.par_chunks_mut(rows * sizes.hidden))
+            .zip(dx.par_chunks_mut(rows * sizes.inputs))
+            .map(|(((((tape, h), out), dout), dh), dx)| {
+                let rows = h.len() / sizes.hidden;
+                let part = |lines: &[f32], from: usize, len: usize| -> Vec<f32> {
+                    lines
+                        .chunks_exact(sizes.outputs())
+                        .flat_map(|line| line[from..from + len].iter().copied())
+                        .collect()
+                };
+                let state = part(out, 0, sizes.hidden);
+                let mut dstate = part(dout, 0, sizes.hidden);
+                let dmean = part(dout, sizes.hidden, sizes.latent);
+                let dlog_var = part(dout, sizes.hidden + sizes.latent, sizes.latent);
+                let mut pull = Pull::new(sizes, rows);
+                let up = Upstream {
+                    state: &mut dstate,
+                    mean: &dmean,
+                    log_var: &dlog_var,
+                };
+                backward::step(
+                    sizes,
+                    (&w_parts, &transposes),
+                    h,
+                    &tape.rows(sizes, 0..rows),
+                    up,
+                    &mut pull.rows(sizes, 0..rows),
+                    (dh, dx),
+                );
+                (pull, state)
+            })
+            .collect();
+        let each: Vec<Rows> = pulled
+            .iter()
+            .zip(h_values.chunks(rows * sizes.hidden))
+            .zip(x_values.chunks(rows * sizes.inputs))
+            .map(|(((pull, state), h), x)| Rows { h, x, state, pull })
+            .collect();
+        let dflat = backward::weights(sizes, &each);
         Ok((
             Some(Tensor::from_vec(dh, h.shape(), h.device())?),
             Some(Tensor::from_vec(dx, x.shape(), x.device())?),
-            Some(Tensor::from_vec(dw, w.shape(), w.device())?),
+            Some(Tensor::from_vec(dflat, w.shape(), w.device())?),
         ))
     }
 }

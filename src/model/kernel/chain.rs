@@ -11,20 +11,60 @@ use candle_core::{Layout, Result, bail};
 use rayon::prelude::*;
 
 use super::layer::{Kind, Layer};
+use super::matmul::Write;
 use super::pointwise::Activation;
 use super::values;
 
 /// Samples of a group; 4 to 8 fill the second-level cache with the largest layers.
 const GROUP: usize = 4;
+/// Buffers that are kept for the next call: a training step has some thirty on two threads.
+const POOL: usize = 40;
 /// Layers with at least this many rows a sample run in groups.
 const GROUPED_ROWS: usize = 8;
+
+/// Layers that share a loop over samples.
+#[derive(Debug)]
+struct Segment {
+    layers: Range<usize>,
+    /// Whether that loop goes by groups, or takes all samples at once.
+    grouped: bool,
+}
+
+impl Segment {
+    /// Samples that are in work at once, of these.
+    fn room(&self, samples: usize) -> usize {
+        if self.grouped {
+            GROUP.min(samples)
+        } else {
+            samples
+        }
+    }
+
+    fn groups(&self, samples: usize) -> impl Iterator<Item = Range<usize>> {
+        let size = self.room(samples).max(1);
+        (0..samples)
+            .step_by(size)
+            .map(move |start| start..(start + size).min(samples))
+    }
+}
+
+/// The gradients above and below a layer, for one group.
+#[derive(Default)]
+struct Gradients {
+    above: Vec<f32>,
+    below: Vec<f32>,
+}
+
+/// The numbers of a group, of `each` a sample.
+fn of_group<'a>(all: &'a [f32], group: &Range<usize>, each: usize) -> &'a [f32] {
+    &all[group.start * each..group.end * each]
+}
 
 /// Layers one after another with their parameters in one flat tensor.
 #[derive(Debug)]
 pub struct Chain {
     layers: Vec<Layer>,
-    /// Runs of layers that share a loop over samples, and whether that loop goes by groups.
-    segments: Vec<(Range<usize>, bool)>,
+    segments: Vec<Segment>,
     parameters: usize,
     buffers: Mutex<Vec<Vec<f32>>>,
 }
@@ -46,12 +86,15 @@ impl Chain {
                 layer
             })
             .collect();
-        let mut segments: Vec<(Range<usize>, bool)> = Vec::new();
+        let mut segments: Vec<Segment> = Vec::new();
         for (index, layer) in layers.iter().enumerate() {
             let grouped = layer.rows() >= GROUPED_ROWS;
             match segments.last_mut() {
-                Some((range, last)) if *last && grouped => range.end = index + 1,
-                _ => segments.push((index..index + 1, grouped)),
+                Some(last) if last.grouped && grouped => last.layers.end = index + 1,
+                _ => segments.push(Segment {
+                    layers: index..index + 1,
+                    grouped,
+                }),
             }
         }
         Self {
@@ -87,18 +130,9 @@ impl Chain {
         self.layers.iter().map(Layer::outputs).sum()
     }
 
-    fn scratch(&self, segment: &(Range<usize>, bool), samples: usize) -> usize {
-        let group = if segment.1 {
-            GROUP.min(samples)
-        } else {
-            samples
-        };
-        self.layers[segment.0.clone()]
-            .iter()
-            .map(Layer::scratch)
-            .max()
-            .unwrap_or(0)
-            * group
+    fn scratch(&self, segment: &Segment, samples: usize) -> usize {
+        let each = self.layers[segment.layers.clone()].iter();
+        each.map(Layer::scratch).max().unwrap_or(0) * segment.room(samples)
     }
 
     /// A buffer of `len` numbers with arbitrary contents, reused between calls: fresh pages cost more than the sums.
@@ -108,10 +142,10 @@ impl Chain {
         at.map_or_else(|| vec![0.0; len], |at| pool.swap_remove(at))
     }
 
-    /// Gives a buffer back; only a few are kept.
+    /// Gives a buffer back; the oldest goes where there are too many.
     pub(super) fn give(&self, buffer: Vec<f32>) {
         let mut pool = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
-        if pool.len() >= 12 {
+        if pool.len() >= POOL {
             pool.remove(0);
         }
         pool.push(buffer);
@@ -125,48 +159,79 @@ impl Chain {
         parameters: &[f32],
         activations: &mut [f32],
     ) {
+        self.forward_segments(&self.segments, samples, x, parameters, activations);
+    }
+
+    /// The same for the first segments alone.
+    fn forward_segments(
+        &self,
+        segments: &[Segment],
+        samples: usize,
+        x: &[f32],
+        parameters: &[f32],
+        activations: &mut [f32],
+    ) {
         let mut outputs = self.split(samples, activations);
-        for segment in &self.segments {
+        for segment in segments {
             let mut scratch = self.take(self.scratch(segment, samples));
-            for group in groups(samples, segment.1) {
-                for index in segment.0.clone() {
-                    self.forward_layer(index, &group, x, parameters, &mut outputs, &mut scratch);
-                }
+            let (before, after) = outputs.split_at_mut(segment.layers.start);
+            let input: &[f32] = before.last().map_or(x, |output| output);
+            for group in segment.groups(samples) {
+                let input = of_group(input, &group, self.layers[segment.layers.start].inputs());
+                let mut outputs: Vec<&mut [f32]> = after
+                    .iter_mut()
+                    .zip(&self.layers[segment.layers.clone()])
+                    .map(|(out, layer)| {
+                        &mut out[group.start * layer.outputs()..group.end * layer.outputs()]
+                    })
+                    .collect();
+                self.forward_group(
+                    segment,
+                    group.len(),
+                    input,
+                    parameters,
+                    &mut outputs,
+                    &mut scratch,
+                );
             }
             self.give(scratch);
         }
     }
 
-    /// Each layer's output for all samples of a part.
-    fn split<'a>(&self, samples: usize, mut activations: &'a mut [f32]) -> Vec<&'a mut [f32]> {
-        let each = |layer: &Layer| {
-            let (head, tail) =
-                std::mem::take(&mut activations).split_at_mut(samples * layer.outputs());
-            activations = tail;
-            head
-        };
-        self.layers.iter().map(each).collect()
-    }
-
-    fn forward_layer(
+    /// Outputs of a segment's layers for one group.
+    fn forward_group(
         &self,
-        index: usize,
-        group: &Range<usize>,
-        x: &[f32],
+        segment: &Segment,
+        samples: usize,
+        input: &[f32],
         parameters: &[f32],
         outputs: &mut [&mut [f32]],
         scratch: &mut [f32],
     ) {
-        let layer = &self.layers[index];
-        let (before, from) = outputs.split_at_mut(index);
-        let input: &[f32] = before.last().map_or(x, |output| output);
-        let input = &input[group.start * layer.inputs()..group.end * layer.inputs()];
-        let output = &mut from[0][group.start * layer.outputs()..group.end * layer.outputs()];
-        let scratch = &mut scratch[..group.len() * layer.scratch()];
-        layer.forward(group.len(), input, parameters, output, scratch);
+        for (i, layer) in self.layers[segment.layers.clone()].iter().enumerate() {
+            let (before, here) = outputs.split_at_mut(i);
+            let input: &[f32] = before.last().map_or(input, |output| output);
+            let scratch = &mut scratch[..samples * layer.scratch()];
+            layer.forward(samples, input, parameters, here[0], scratch);
+        }
     }
 
-    /// Gradients of one part: adds to `dw`, and fills `dx` where wanted. `dy` is the gradient of the last output.
+    /// Each layer's output for all samples of a part; fewer layers where `activations` has room for fewer.
+    fn split<'a>(&self, samples: usize, mut activations: &'a mut [f32]) -> Vec<&'a mut [f32]> {
+        let mut outputs = Vec::with_capacity(self.layers.len());
+        for layer in &self.layers {
+            let len = samples * layer.outputs();
+            if activations.len() < len {
+                break;
+            }
+            let (head, tail) = activations.split_at_mut(len);
+            activations = tail;
+            outputs.push(head);
+        }
+        outputs
+    }
+
+    /// Gradients of one part: fills `dw`, and `dx` where wanted. `dy` is the gradient of the last output.
     pub(super) fn backward_part(
         &self,
         x: &[f32],
@@ -176,49 +241,55 @@ impl Chain {
         dw: &mut [f32],
         dx: Option<&mut [f32]>,
     ) {
-        let samples = x.len() / self.inputs();
-        let outputs = self.split(samples, activations);
-        // Gradient of the current segment's output, over the whole part.
         let mut outer = self.take(dy.len());
         outer.copy_from_slice(dy);
-        // Gradients of one group, above and below a layer.
-        let (mut gradient, mut below) = (Vec::new(), Vec::new());
-        for segment in self.segments.iter().rev() {
-            let first = segment.0.start;
-            let mut inner = self.take(samples * self.layers[first].inputs());
+        self.backward_segments(&self.segments, x, parameters, activations, outer, dw, dx);
+    }
+
+    /// The same for the first segments alone; `outer` is the gradient of the last one's output.
+    #[expect(clippy::too_many_arguments, reason = "see Layer::backward")]
+    fn backward_segments(
+        &self,
+        segments: &[Segment],
+        x: &[f32],
+        parameters: &[f32],
+        activations: &mut [f32],
+        mut outer: Vec<f32>,
+        dw: &mut [f32],
+        dx: Option<&mut [f32]>,
+    ) {
+        let samples = x.len() / self.inputs();
+        let outputs = self.split(samples, activations);
+        let mut gradients = Gradients::default();
+        for segment in segments.iter().rev() {
+            let Range { start: first, end } = segment.layers;
+            let (inputs, last) = (self.layers[first].inputs(), self.layers[end - 1].outputs());
+            let mut inner = self.take(samples * inputs);
             let wanted = first > 0 || dx.is_some();
             let mut scratch = self.take(self.scratch(segment, samples));
-            for group in groups(samples, segment.1) {
-                let last = self.layers[segment.0.end - 1].outputs();
-                gradient.clear();
-                gradient.extend_from_slice(&outer[group.start * last..group.end * last]);
-                for index in segment.0.clone().rev() {
-                    let layer = &self.layers[index];
-                    let input = index.checked_sub(1).map_or(x, |before| &*outputs[before]);
-                    let input = &input[group.start * layer.inputs()..group.end * layer.inputs()];
-                    let output =
-                        &outputs[index][group.start * layer.outputs()..group.end * layer.outputs()];
-                    let target = if index == first {
-                        wanted.then(|| {
-                            &mut inner[group.start * layer.inputs()..group.end * layer.inputs()]
-                        })
-                    } else {
-                        below.resize(group.len() * layer.inputs(), 0.0);
-                        Some(&mut below[..])
-                    };
-                    let scratch = &mut scratch[..group.len() * layer.scratch()];
-                    layer.backward(
-                        group.len(),
-                        input,
-                        output,
-                        parameters,
-                        &mut gradient,
-                        dw,
-                        target,
-                        scratch,
-                    );
-                    std::mem::swap(&mut gradient, &mut below);
-                }
+            let input = first.checked_sub(1).map_or(x, |before| &*outputs[before]);
+            for group in segment.groups(samples) {
+                let outputs: Vec<&[f32]> = segment
+                    .layers
+                    .clone()
+                    .map(|index| of_group(outputs[index], &group, self.layers[index].outputs()))
+                    .collect();
+                gradients.above.clear();
+                gradients
+                    .above
+                    .extend_from_slice(of_group(&outer, &group, last));
+                let target = wanted.then(|| &mut inner[group.start * inputs..group.end * inputs]);
+                self.backward_group(
+                    segment,
+                    &group,
+                    of_group(input, &group, inputs),
+                    &outputs,
+                    parameters,
+                    &mut gradients,
+                    dw,
+                    target,
+                    &mut scratch,
+                );
             }
             self.give(scratch);
             self.give(std::mem::replace(&mut outer, inner));
@@ -227,6 +298,127 @@ impl Chain {
             dx.copy_from_slice(&outer);
         }
         self.give(outer);
+    }
+
+    /// Gradients of one group of a segment, from that of its output in `gradients.above`. The first group of a part
+    /// replaces what is in `dw`, the others add to it.
+    #[expect(clippy::too_many_arguments, reason = "see Layer::backward")]
+    fn backward_group(
+        &self,
+        segment: &Segment,
+        group: &Range<usize>,
+        input: &[f32],
+        outputs: &[&[f32]],
+        parameters: &[f32],
+        gradients: &mut Gradients,
+        dw: &mut [f32],
+        mut target: Option<&mut [f32]>,
+        scratch: &mut [f32],
+    ) {
+        let write = if group.start == 0 {
+            Write::Replace
+        } else {
+            Write::Add
+        };
+        for (i, layer) in self.layers[segment.layers.clone()].iter().enumerate().rev() {
+            let input = i.checked_sub(1).map_or(input, |before| outputs[before]);
+            let Gradients { above, below } = gradients;
+            let target = if i == 0 {
+                target.take()
+            } else {
+                below.resize(group.len() * layer.inputs(), 0.0);
+                Some(&mut below[..])
+            };
+            let scratch = &mut scratch[..group.len() * layer.scratch()];
+            layer.backward(
+                group.len(),
+                (input, outputs[i]),
+                parameters,
+                above,
+                (dw, write),
+                target,
+                scratch,
+            );
+            std::mem::swap(above, below);
+        }
+    }
+
+    /// Forward, error and backward of one part, the last segment group by group: what is put out is compared and
+    /// differentiated while it is in the cache. `error(samples, y, dy)` leaves the gradient of `y` in `dy`. Without
+    /// `gradients`, of parameters and of `x`, nothing is differentiated.
+    pub(super) fn fused_part(
+        &self,
+        x: &[f32],
+        parameters: &[f32],
+        mut error: impl FnMut(Range<usize>, &[f32], &mut [f32]),
+        gradients: Option<(&mut [f32], &mut [f32])>,
+    ) {
+        let Some((segment, leading)) = self.segments.split_last() else {
+            return;
+        };
+        let samples = x.len() / self.inputs();
+        let first = segment.layers.start;
+        let led: usize = self.layers[..first].iter().map(Layer::outputs).sum();
+        let mut activations = self.take(samples * led);
+        self.forward_segments(leading, samples, x, parameters, &mut activations);
+        let inputs = self.layers[first].inputs();
+        let input = if first == 0 {
+            x
+        } else {
+            &activations[samples * (led - inputs)..]
+        };
+        let room = segment.room(samples);
+        let layers = &self.layers[segment.layers.clone()];
+        let mut buffers: Vec<Vec<f32>> = layers
+            .iter()
+            .map(|layer| self.take(room * layer.outputs()))
+            .collect();
+        let mut scratch = self.take(self.scratch(segment, samples));
+        let mut inner = self.take(samples * inputs);
+        let mut between = Gradients::default();
+        let (mut dw, dx) = gradients.unzip();
+        for group in segment.groups(samples) {
+            let mut outputs: Vec<&mut [f32]> = buffers
+                .iter_mut()
+                .zip(layers)
+                .map(|(buffer, layer)| &mut buffer[..group.len() * layer.outputs()])
+                .collect();
+            let input = of_group(input, &group, inputs);
+            self.forward_group(
+                segment,
+                group.len(),
+                input,
+                parameters,
+                &mut outputs,
+                &mut scratch,
+            );
+            let outputs: Vec<&[f32]> = outputs.into_iter().map(|output| &*output).collect();
+            let y = outputs[outputs.len() - 1];
+            between.above.resize(y.len(), 0.0);
+            error(group.clone(), y, &mut between.above);
+            if let Some(dw) = &mut dw {
+                let target = &mut inner[group.start * inputs..group.end * inputs];
+                self.backward_group(
+                    segment,
+                    &group,
+                    input,
+                    &outputs,
+                    parameters,
+                    &mut between,
+                    dw,
+                    Some(target),
+                    &mut scratch,
+                );
+            }
+        }
+        buffers.into_iter().for_each(|buffer| self.give(buffer));
+        self.give(scratch);
+        if let Some(dw) = dw {
+            self.backward_segments(leading, x, parameters, &mut activations, inner, dw, dx);
+        } else {
+            self.give(inner);
+        }
+        self.give(activations);
     }
 
     /// Outputs of every layer, part after part, the parts in parallel.
@@ -272,28 +464,24 @@ pub(super) fn part_size(samples: usize) -> usize {
     samples.div_ceil(rayon::current_num_threads()).max(1)
 }
 
-fn groups(samples: usize, grouped: bool) -> impl Iterator<Item = Range<usize>> {
-    let size = if grouped { GROUP } else { samples.max(1) };
-    (0..samples)
-        .step_by(size)
-        .map(move |start| start..(start + size).min(samples))
-}
-
-/// Adds up what each part found.
-pub(super) fn sum_parts(parts: Vec<Vec<f32>>) -> Vec<f32> {
-    let mut parts = parts.into_iter();
-    let mut total = parts.next().unwrap_or_default();
-    for part in parts {
+impl Chain {
+    /// Adds up the gradients that each part found.
+    pub(super) fn sum_parts(&self, parts: Vec<Vec<f32>>) -> Vec<f32> {
+        let mut parts = parts.into_iter();
+        let mut total = parts.next().unwrap_or_default();
+        for part in parts {
+            total
+                .par_chunks_mut(1 << 16)
+                .zip(part.par_chunks(1 << 16))
+                .for_each(|(total, part)| {
+                    for (t, p) in total.iter_mut().zip(part) {
+                        *t += p;
+                    }
+                });
+            self.give(part);
+        }
         total
-            .par_chunks_mut(1 << 16)
-            .zip(part.par_chunks(1 << 16))
-            .for_each(|(total, part)| {
-                for (t, p) in total.iter_mut().zip(part) {
-                    *t += p;
-                }
-            });
     }
-    total
 }
 
 /// The numbers behind a tensor's storage guard.

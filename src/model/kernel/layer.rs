@@ -167,9 +167,9 @@ impl Layer {
         self.activation.apply(y);
     }
 
-    /// Adds the gradient of the weights to `dw` (laid out as the chain's parameters) and, where wanted, writes the
-    /// gradient of the input to `dx`. `dy` comes in as the gradient of the output and leaves as that of the layer
-    /// before its nonlinearity.
+    /// Writes the gradient of the weights to `dw` (laid out as the chain's parameters), replacing or adding, and,
+    /// where wanted, the gradient of the input to `dx`. `dy` comes in as the gradient of the output and leaves as that
+    /// of the layer before its nonlinearity.
     #[expect(
         clippy::too_many_arguments,
         reason = "one gradient needs every one of them; a struct would only rename them"
@@ -177,11 +177,10 @@ impl Layer {
     pub fn backward(
         &self,
         samples: usize,
-        x: &[f32],
-        y: &[f32],
+        (x, y): (&[f32], &[f32]),
         parameters: &[f32],
         dy: &mut [f32],
-        dw: &mut [f32],
+        (dw, write): (&mut [f32], Write),
         dx: Option<&mut [f32]>,
         scratch: &mut [f32],
     ) {
@@ -197,9 +196,12 @@ impl Layer {
                     Mat::transposed(x, k),
                     Mat::rows(dy, n),
                     dw,
-                    Write::Add,
+                    write,
                 );
                 if self.bias {
+                    if write == Write::Replace {
+                        after[..n].fill(0.0);
+                    }
                     sum_rows(dy, &mut after[..n]);
                 }
                 if let Some(dx) = dx {
@@ -219,7 +221,7 @@ impl Layer {
                     Mat::transposed(gathered, k),
                     Mat::rows(dy, n),
                     dw,
-                    Write::Add,
+                    write,
                 );
                 if let Some(dx) = dx {
                     matmul(
@@ -239,7 +241,7 @@ impl Layer {
                     Mat::transposed(x, k),
                     Mat::rows(gathered, n),
                     dw,
-                    Write::Add,
+                    write,
                 );
                 if let Some(dx) = dx {
                     matmul(

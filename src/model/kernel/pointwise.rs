@@ -140,20 +140,19 @@ pub fn sum_rows(y: &[f32], row: &mut [f32]) {
     );
 }
 
-/// Σ x² in sixteen running sums, so that the order, and the bits, are the same everywhere.
+/// Σ x² in sixty-four running sums, so that the order, and the bits, are the same everywhere.
 pub fn sum_of_squares(x: &[f32]) -> f32 {
     vectorised(
         #[inline(always)]
         || {
-            let mut lanes = [0.0_f32; 16];
-            let chunks = x.chunks_exact(16);
-            let rest: f32 = chunks.remainder().iter().map(|v| v * v).sum();
+            let mut lanes = [0.0_f32; 64];
+            let (chunks, rest) = x.as_chunks::<64>();
             for chunk in chunks {
                 for (lane, &v) in lanes.iter_mut().zip(chunk) {
                     *lane += v * v;
                 }
             }
-            lanes.iter().sum::<f32>() + rest
+            lanes.iter().sum::<f32>() + rest.iter().map(|v| v * v).sum::<f32>()
         },
     )
 }

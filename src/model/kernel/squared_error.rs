@@ -3,12 +3,13 @@
 //! The result is one number, Σ wₙ ‖chain(zₙ) − targetₙ‖², so its gradient with respect to inputs and parameters is
 //! known up to a factor when it is computed; the backward pass only scales it.
 
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use candle_core::{CpuStorage, CustomOp3, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
-use super::chain::{Chain, part_size, sum_parts};
+use super::chain::{Chain, part_size};
 use super::{values, vectorised};
 
 /// Squared error of each sample, once the operation has run.
@@ -48,29 +49,22 @@ impl SquaredError {
         target: &[f32],
         weights: &[f32],
     ) -> (Vec<f32>, Vec<f32>, Vec<f32>) {
-        let chain = &self.chain;
-        let samples = weights.len();
-        let mut activations = chain.take(chain.activations_len(samples));
-        chain.forward_part(samples, z, w, &mut activations);
-        let y = &activations[chain.last_output(samples)];
-        let mut dy = chain.take(y.len());
-        let width = chain.outputs();
-        let lines = y
-            .chunks_exact(width)
-            .zip(target.chunks_exact(width))
-            .zip(dy.chunks_exact_mut(width));
-        let errors = lines
-            .zip(weights)
-            .map(|(((y, t), dy), &weight)| difference(y, t, weight, dy))
-            .collect();
+        let (width, mut errors) = (self.chain.outputs(), Vec::with_capacity(weights.len()));
+        let error = |samples: Range<usize>, y: &[f32], dy: &mut [f32]| {
+            let target = &target[samples.start * width..samples.end * width];
+            let lines = y.chunks_exact(width).zip(target.chunks_exact(width));
+            let lines = lines.zip(dy.chunks_exact_mut(width));
+            for (((y, t), dy), &weight) in lines.zip(&weights[samples]) {
+                errors.push(difference(y, t, weight, dy));
+            }
+        };
         let (mut dw, mut dz) = (Vec::new(), Vec::new());
         if self.train {
-            dw = vec![0.0; chain.parameters()];
+            dw = self.chain.take(self.chain.parameters());
             dz = vec![0.0; z.len()];
-            chain.backward_part(z, w, &mut activations, &dy, &mut dw, Some(&mut dz));
         }
-        chain.give(dy);
-        chain.give(activations);
+        let gradients = self.train.then_some((&mut dw[..], &mut dz[..]));
+        self.chain.fused_part(z, w, error, gradients);
         (errors, dw, dz)
     }
 }
@@ -82,12 +76,20 @@ fn difference(y: &[f32], t: &[f32], weight: f32, dy: &mut [f32]) -> f32 {
         #[inline(always)]
         || {
             let mut lanes = [0.0_f32; 16];
-            for ((y, t), dy) in y.chunks(16).zip(t.chunks(16)).zip(dy.chunks_mut(16)) {
-                for (((lane, &y), &t), dy) in lanes.iter_mut().zip(y).zip(t).zip(dy) {
-                    let e = y - t;
-                    *lane += e * e;
-                    *dy = 2.0 * weight * e;
+            let (y, y_rest) = y.as_chunks::<16>();
+            let (t, t_rest) = t.as_chunks::<16>();
+            let (dy, dy_rest) = dy.as_chunks_mut::<16>();
+            for ((y, t), dy) in y.iter().zip(t).zip(dy) {
+                for i in 0..16 {
+                    let e = y[i] - t[i];
+                    lanes[i] += e * e;
+                    dy[i] = 2.0 * weight * e;
                 }
+            }
+            for (i, (y, t)) in y_rest.iter().zip(t_rest).enumerate() {
+                let e = y - t;
+                lanes[i] += e * e;
+                dy_rest[i] = 2.0 * weight * e;
             }
             lanes.iter().sum()
         },
@@ -147,7 +149,7 @@ impl CustomOp3 for SquaredError {
             *self
                 .gradients
                 .lock()
-                .unwrap_or_else(PoisonError::into_inner) = Some((dz, sum_parts(dws)));
+                .unwrap_or_else(PoisonError::into_inner) = Some((dz, self.chain.sum_parts(dws)));
         }
         Ok((CpuStorage::F32(vec![total as f32]), Shape::from(())))
     }

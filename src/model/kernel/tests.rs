@@ -7,6 +7,7 @@ use pulp::Arch;
 
 use super::cell::{Cell, Sizes};
 use super::choose;
+use super::recurrence::{Kept, Recurrence};
 use super::weight_norm::{Stretch, WeightNorm};
 
 fn numbers(n: usize, seed: f32) -> Vec<f32> {
@@ -113,6 +114,52 @@ fn the_cell_has_the_gradient_of_its_formula() -> Result<()> {
     check(&h, |h| run(h, &x, &w), 1)?;
     check(&x, |x| run(&h, x, &w), 1)?;
     check(&w, |w| run(&h, &x, w), 5)
+}
+
+#[test]
+fn the_recurrence_has_the_gradient_of_its_formula() -> Result<()> {
+    let sizes = Sizes {
+        latent: 2,
+        inputs: 3,
+        hidden: 5,
+        mixtures: 3,
+    };
+    // More sequences than one task takes, experts off, on and in between, and a step that only the prior speaks at.
+    let (batch, steps, experts) = (9, 4, 2);
+    let alphas: Vec<f32> = (0..batch * steps)
+        .flat_map(|i| match i % 5 {
+            0 => [1.0, 0.0, 1.0],
+            1 => [0.0, 0.0, 1.0],
+            2 => [0.5, 1.0, 0.0],
+            _ => [1.0, 1.0, 1.0],
+        })
+        .collect();
+    let stated = Var::from_vec(
+        numbers(2 * experts * batch * steps * sizes.latent, 1.0),
+        (2 * experts, batch, steps, sizes.latent),
+        &Device::Cpu,
+    )?;
+    let w = Var::from_vec(
+        numbers(sizes.parameters(), 2.0),
+        sizes.parameters(),
+        &Device::Cpu,
+    )?;
+    for noise in [None, Some(numbers(batch * steps * sizes.latent, 4.0))] {
+        let run = |stated: &Tensor, w: &Tensor| {
+            let op = Recurrence {
+                sizes,
+                alphas: alphas.clone(),
+                controls: numbers(batch * (steps - 1), 3.0),
+                noise: noise.clone(),
+                first_log_var: 1.0,
+                kept: Kept::default(),
+            };
+            scalar(&stated.apply_op2(w, op)?)?.affine(0.1, 0.0)
+        };
+        check(&stated, |stated| run(stated, &w), 3)?;
+        check(&w, |w| run(&stated, w), 5)?;
+    }
+    Ok(())
 }
 
 #[test]

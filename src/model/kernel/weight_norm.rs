@@ -55,64 +55,112 @@ pub struct WeightNorm {
     pub stretches: Vec<Stretch>,
 }
 
+/// Numbers of a parallel task.
+const TASK: usize = 1 << 15;
+
 /// Σ over outer and inner of `a * b`, for each norm.
 fn dots(a: &[f32], b: &[f32], norms: usize, inner: usize) -> Vec<f32> {
+    if inner == 1 {
+        return columns(a, b, norms);
+    }
+    // A run of `inner` numbers belongs to one norm; runs are summed in parallel, then over outer in order.
+    let runs: Vec<f32> = a
+        .par_chunks(inner)
+        .zip(b.par_chunks(inner))
+        .with_min_len(TASK / inner + 1)
+        .map(|(a, b)| dot(a, b))
+        .collect();
     let mut sums = vec![0.0_f64; norms];
-    for (a, b) in a
-        .chunks_exact(norms * inner)
-        .zip(b.chunks_exact(norms * inner))
-    {
-        for ((a, b), sum) in a
-            .chunks_exact(inner)
-            .zip(b.chunks_exact(inner))
-            .zip(&mut sums)
-        {
-            if inner == 1 {
-                *sum += f64::from(a[0] * b[0]);
-            } else {
-                *sum += f64::from(dot(a, b));
-            }
+    for run in runs.chunks_exact(norms) {
+        for (sum, &run) in sums.iter_mut().zip(run) {
+            *sum += f64::from(run);
         }
     }
     sums.into_iter().map(|sum| sum as f32).collect()
 }
 
-/// A dot product in sixteen lanes.
+/// Sums of the columns of `a * b`, rows of `norms`: in parallel tasks of rows, added in order.
+fn columns(a: &[f32], b: &[f32], norms: usize) -> Vec<f32> {
+    let task = (TASK / norms + 1) * norms;
+    let parts: Vec<Vec<f64>> = a
+        .par_chunks(task)
+        .zip(b.par_chunks(task))
+        .map(|(a, b)| {
+            let mut sums = vec![0.0_f64; norms];
+            vectorised(
+                #[inline(always)]
+                || {
+                    for (a, b) in a.chunks_exact(norms).zip(b.chunks_exact(norms)) {
+                        for ((sum, &a), &b) in sums.iter_mut().zip(a).zip(b) {
+                            *sum += f64::from(a * b);
+                        }
+                    }
+                },
+            );
+            sums
+        })
+        .collect();
+    (0..norms)
+        .map(|norm| parts.iter().map(|part| part[norm]).sum::<f64>() as f32)
+        .collect()
+}
+
+/// A dot product in sixty-four lanes.
 fn dot(a: &[f32], b: &[f32]) -> f32 {
     vectorised(
         #[inline(always)]
         || {
-            let mut lanes = [0.0_f32; 16];
-            for (a, b) in a.chunks(16).zip(b.chunks(16)) {
-                for ((lane, &a), &b) in lanes.iter_mut().zip(a).zip(b) {
-                    *lane += a * b;
+            let mut lanes = [0.0_f32; 64];
+            let (a, a_rest) = a.as_chunks::<64>();
+            let (b, b_rest) = b.as_chunks::<64>();
+            for (a, b) in a.iter().zip(b) {
+                for i in 0..64 {
+                    lanes[i] += a[i] * b[i];
                 }
+            }
+            for (lane, (a, b)) in lanes.iter_mut().zip(a_rest.iter().zip(b_rest)) {
+                *lane += a * b;
             }
             lanes.iter().sum()
         },
     )
 }
 
-/// Calls `row(norm index, v, out)` for each run of `inner` numbers.
-fn rows(
+/// Calls `place(v, out, norm)` for every number, vectorised, in parallel. `per_norm` has two numbers a norm.
+fn scaled(
     v: &[f32],
     out: &mut [f32],
-    norms: usize,
-    inner: usize,
-    row: impl Fn(usize, &[f32], &mut [f32]) + Sync,
+    (norms, inner): (usize, usize),
+    per_norm: (&[f32], &[f32]),
+    place: impl Fn(f32, &mut f32, f32, f32) + Sync,
 ) {
-    let runs_per_task = (1 << 14) / inner + 1;
-    out.par_chunks_mut(runs_per_task * inner)
-        .zip(v.par_chunks(runs_per_task * inner))
+    // Whole rows of norms where a number each, else whole runs of a norm.
+    let unit = if inner == 1 { norms } else { inner };
+    let units = TASK / unit + 1;
+    out.par_chunks_mut(units * unit)
+        .zip(v.par_chunks(units * unit))
         .enumerate()
         .for_each(|(task, (out, v))| {
-            for (run, (out, v)) in out
-                .chunks_exact_mut(inner)
-                .zip(v.chunks_exact(inner))
-                .enumerate()
-            {
-                row((task * runs_per_task + run) % norms, v, out);
-            }
+            vectorised(
+                #[inline(always)]
+                || {
+                    let lines = out.chunks_exact_mut(unit).zip(v.chunks_exact(unit));
+                    for (i, (out, v)) in lines.enumerate() {
+                        if inner == 1 {
+                            let factors = per_norm.0.iter().zip(per_norm.1);
+                            for ((out, &v), (&a, &b)) in out.iter_mut().zip(v).zip(factors) {
+                                place(v, out, a, b);
+                            }
+                        } else {
+                            let norm = (task * units + i) % norms;
+                            let (a, b) = (per_norm.0[norm], per_norm.1[norm]);
+                            for (out, &v) in out.iter_mut().zip(v) {
+                                place(v, out, a, b);
+                            }
+                        }
+                    }
+                },
+            );
         });
 }
 
@@ -142,11 +190,14 @@ impl WeightNorm {
                         .zip(g)
                         .map(|(s, g)| g / s.sqrt())
                         .collect();
-                    rows(v, target, norms, inner, |norm, v, out| {
-                        for (o, v) in out.iter_mut().zip(v) {
-                            *o = v * scale[norm];
-                        }
-                    });
+                    scaled(
+                        v,
+                        target,
+                        (norms, inner),
+                        (&scale, &scale),
+                        #[inline(always)]
+                        |v, out, scale, _| *out = v * scale,
+                    );
                 }
             }
             (theta, out) = (rest, after);
@@ -176,11 +227,14 @@ impl WeightNorm {
                         *dg = a / s.sqrt();
                     }
                     dv.copy_from_slice(dw_here);
-                    rows(v, dv, norms, inner, |norm, v, dv| {
-                        for (d, v) in dv.iter_mut().zip(v) {
-                            *d = scale[norm] * (*d - v * part[norm]);
-                        }
-                    });
+                    scaled(
+                        v,
+                        dv,
+                        (norms, inner),
+                        (&scale, &part),
+                        #[inline(always)]
+                        |v, d, scale, part| *d = scale * (*d - v * part),
+                    );
                 }
             }
             (theta, dw, out) = (rest, dw_rest, after);

@@ -1,135 +1,119 @@
-//! The gradients of the cell's step.
+//! The gradients of the cell's step: back through one step, then the weights' over all steps at once.
 
-use super::{Kept, Sizes};
+use std::ops::Range;
+
+use super::forward::TapeRows;
+use super::{Sizes, Weights};
 use crate::model::kernel::matmul::{Mat, Write, matmul};
 use crate::model::kernel::pointwise::sum_rows;
+use crate::model::kernel::rows::{accumulate, transposed};
+use crate::model::kernel::vectorised;
 
-/// Gradients of h, x and the flat weights for the gradient `dout` of the output `out`.
-pub(super) fn step(
+/// Transposes of the weights that gradients are multiplied by.
+pub struct Transposes {
+    input: Vec<f32>,
+    recurrent: Vec<f32>,
+    head: Vec<f32>,
+}
+
+impl Transposes {
+    /// Those of `w`.
+    pub fn of(sizes: Sizes, w: &Weights) -> Self {
+        Self {
+            input: transposed(w.input, 3 * sizes.hidden),
+            recurrent: transposed(w.recurrent, 3 * sizes.hidden),
+            head: transposed(w.head, sizes.head()),
+        }
+    }
+}
+
+/// Gradients of what the products of each step put out, a row for each step.
+pub struct Pull {
+    gates: Vec<f32>,
+    recurrent: Vec<f32>,
+    head: Vec<f32>,
+    mapped: Vec<f32>,
+}
+
+/// Some rows of a [`Pull`].
+pub struct PullRows<'a> {
+    gates: &'a mut [f32],
+    recurrent: &'a mut [f32],
+    head: &'a mut [f32],
+    mapped: &'a mut [f32],
+}
+
+impl Pull {
+    /// Room for `rows`.
+    pub fn new(sizes: Sizes, rows: usize) -> Self {
+        Self {
+            gates: vec![0.0; rows * 3 * sizes.hidden],
+            recurrent: vec![0.0; rows * 3 * sizes.hidden],
+            head: vec![0.0; rows * sizes.head()],
+            mapped: vec![0.0; rows * sizes.maps()],
+        }
+    }
+
+    /// These rows.
+    pub fn rows(&mut self, sizes: Sizes, rows: Range<usize>) -> PullRows<'_> {
+        let part = |width: usize| rows.start * width..rows.end * width;
+        PullRows {
+            gates: &mut self.gates[part(3 * sizes.hidden)],
+            recurrent: &mut self.recurrent[part(3 * sizes.hidden)],
+            head: &mut self.head[part(sizes.head())],
+            mapped: &mut self.mapped[part(sizes.maps())],
+        }
+    }
+}
+
+/// Gradients of the new state, the mean and the log-variance.
+pub struct Upstream<'a> {
+    /// `(B, hidden)`; the head's share is added to it.
+    pub state: &'a mut [f32],
+    /// `(B, Z)`.
+    pub mean: &'a [f32],
+    /// `(B, Z)`.
+    pub log_var: &'a [f32],
+}
+
+/// Back through one step from states `h (B, hidden)`: fills `pull`, and the gradients `dh (B, hidden)` and
+/// `dx (B, inputs)`.
+pub fn step(
     sizes: Sizes,
+    (w, across): (&Weights, &Transposes),
     h: &[f32],
-    x: &[f32],
-    flat: &[f32],
-    out: &[f32],
-    dout: &[f32],
-    kept: &Kept,
-) -> [Vec<f32>; 3] {
-    let Sizes {
-        latent,
-        inputs,
-        hidden,
-        mixtures,
-    } = sizes;
-    let w = sizes.weights(flat);
-    let batch = x.len() / inputs;
-    let (gates, head, maps) = (3 * hidden, mixtures + latent, mixtures * latent);
-    let state: Vec<f32> = out
-        .chunks_exact(sizes.outputs())
-        .flat_map(|line| line[..hidden].iter().copied())
-        .collect();
-
-    let (dhead, dmapped) = through_mixture(sizes, dout, kept);
-    let mut dstate: Vec<f32> = dout
-        .chunks_exact(sizes.outputs())
-        .flat_map(|line| line[..hidden].iter().copied())
-        .collect();
-    matmul(
-        (batch, hidden, head),
-        Mat::rows(&dhead, head),
-        Mat::transposed(w.head, head),
-        &mut dstate,
-        Write::Add,
-    );
-    let Gates {
-        dgates,
-        drecurrent,
-        mut dh,
-    } = through_gates(sizes, h, &dstate, kept);
-
-    let mut dflat = vec![0.0; sizes.parameters()];
-    let mut rest = &mut dflat[..];
-    let mut parts = sizes.parts().map(|len| {
-        let (part, tail) = std::mem::take(&mut rest).split_at_mut(len);
-        rest = tail;
-        part
-    });
-    let [
-        dinput,
-        drecurrent_w,
-        dinput_bias,
-        drecurrent_bias,
-        dhead_w,
-        dhead_bias,
-        dbases,
-    ] = &mut parts;
-    let outer = |a: &[f32], m: usize, b: &[f32], n: usize, dw: &mut [f32]| {
-        matmul(
-            (m, n, batch),
-            Mat::transposed(a, m),
-            Mat::rows(b, n),
-            dw,
-            Write::Replace,
-        );
-    };
-    outer(x, inputs, &dgates, gates, dinput);
-    outer(h, hidden, &drecurrent, gates, drecurrent_w);
-    outer(&state, hidden, &dhead, head, dhead_w);
-    outer(&dmapped, maps, x, inputs, dbases);
-    sum_rows(&dgates, dinput_bias);
-    sum_rows(&drecurrent, drecurrent_bias);
-    sum_rows(&dhead, dhead_bias);
-
-    let recurrent = Mat::transposed(w.recurrent, gates);
-    matmul(
-        (batch, hidden, gates),
-        Mat::rows(&drecurrent, gates),
-        recurrent,
-        &mut dh,
-        Write::Add,
-    );
-    let mut dx = vec![0.0; batch * inputs];
-    matmul(
-        (batch, inputs, gates),
-        Mat::rows(&dgates, gates),
-        Mat::transposed(w.input, gates),
-        &mut dx,
-        Write::Replace,
-    );
-    matmul(
-        (batch, inputs, maps),
-        Mat::rows(&dmapped, maps),
-        Mat::rows(w.bases, inputs),
-        &mut dx,
-        Write::Add,
-    );
-    [dh, dx, dflat]
+    tape: &TapeRows,
+    up: Upstream,
+    pull: &mut PullRows,
+    (dh, dx): (&mut [f32], &mut [f32]),
+) {
+    let gates = 3 * sizes.hidden;
+    through_mixture(sizes, &up, tape, pull);
+    accumulate(pull.head, sizes.head(), &across.head, up.state);
+    through_gates(sizes.hidden, h, up.state, tape, pull, dh);
+    accumulate(pull.recurrent, gates, &across.recurrent, dh);
+    dx.fill(0.0);
+    accumulate(pull.gates, gates, &across.input, dx);
+    accumulate(pull.mapped, sizes.maps(), w.bases, dx);
 }
 
 /// Gradients of the head (logits and log-variance side by side) and of each `M_k x`.
-fn through_mixture(sizes: Sizes, dout: &[f32], kept: &Kept) -> (Vec<f32>, Vec<f32>) {
+fn through_mixture(sizes: Sizes, up: &Upstream, tape: &TapeRows, pull: &mut PullRows) {
     let Sizes {
-        latent,
-        hidden,
-        mixtures,
-        ..
+        latent, mixtures, ..
     } = sizes;
-    let (head, maps) = (mixtures + latent, mixtures * latent);
-    let batch = dout.len() / sizes.outputs();
-    let (mut dhead, mut dmapped) = (vec![0.0; batch * head], vec![0.0; batch * maps]);
-    let lines = dout
-        .chunks_exact(sizes.outputs())
-        .zip(kept.mixture.chunks_exact(mixtures));
-    let lines = lines.zip(kept.mapped.chunks_exact(maps));
-    let targets = dhead
-        .chunks_exact_mut(head)
-        .zip(dmapped.chunks_exact_mut(maps));
-    for (((dout, mixture), mapped), (dhead, dmapped)) in lines.zip(targets) {
-        let (dmean, dlog_var) = dout[hidden..].split_at(latent);
+    let (head, maps) = (sizes.head(), sizes.maps());
+    let kept = tape.head.chunks_exact(head);
+    let kept = kept.zip(tape.mapped.chunks_exact(maps));
+    let ups = up.mean.chunks_exact(latent);
+    let ups = ups.zip(up.log_var.chunks_exact(latent));
+    let pulls = pull.head.chunks_exact_mut(head);
+    let pulls = pulls.zip(pull.mapped.chunks_exact_mut(maps));
+    for (((weights, mapped), (dmean, dlog_var)), (dhead, dmapped)) in kept.zip(ups).zip(pulls) {
+        let weights = &weights[..mixtures];
         let (dlogits, dhead_log_var) = dhead.split_at_mut(mixtures);
-        let each = dlogits
-            .iter_mut()
-            .zip(mixture)
-            .zip(mapped.chunks_exact(latent));
+        let each = dlogits.iter_mut().zip(weights);
+        let each = each.zip(mapped.chunks_exact(latent));
         for (((dlogit, weight), mapped), dmapped) in each.zip(dmapped.chunks_exact_mut(latent)) {
             *dlogit = mapped.iter().zip(dmean).map(|(p, d)| p * d).sum();
             for (to, d) in dmapped.iter_mut().zip(dmean) {
@@ -137,48 +121,129 @@ fn through_mixture(sizes: Sizes, dout: &[f32], kept: &Kept) -> (Vec<f32>, Vec<f3
             }
         }
         // Softmax: dlogit_k = α_k (dα_k − Σ_j α_j dα_j).
-        let mean: f32 = dlogits.iter().zip(mixture).map(|(d, a)| d * a).sum();
-        for (d, a) in dlogits.iter_mut().zip(mixture) {
+        let mean: f32 = dlogits.iter().zip(weights).map(|(d, a)| d * a).sum();
+        for (d, a) in dlogits.iter_mut().zip(weights) {
             *d = a * (*d - mean);
         }
         dhead_log_var.copy_from_slice(dlog_var);
     }
-    (dhead, dmapped)
 }
 
-/// Gradients before the gates' nonlinearities, on the input's and on the state's side, and of the state itself.
-struct Gates {
-    dgates: Vec<f32>,
-    drecurrent: Vec<f32>,
-    dh: Vec<f32>,
+/// Gradients before the gates' nonlinearities, on the input's and on the state's side, and the state's own part.
+fn through_gates(
+    hidden: usize,
+    h: &[f32],
+    dstate: &[f32],
+    tape: &TapeRows,
+    pull: &mut PullRows,
+    dh: &mut [f32],
+) {
+    vectorised(
+        #[inline(always)]
+        || {
+            let kept = tape.gates.chunks_exact(3 * hidden);
+            let kept = kept.zip(tape.recurrent.chunks_exact(3 * hidden));
+            let states = h.chunks_exact(hidden).zip(dstate.chunks_exact(hidden));
+            let pulls = pull.gates.chunks_exact_mut(3 * hidden);
+            let pulls = pulls.zip(pull.recurrent.chunks_exact_mut(3 * hidden));
+            let pulls = pulls.zip(dh.chunks_exact_mut(hidden));
+            for (((gates, recurrent), (h, dstate)), ((dgates, drecurrent), dh)) in
+                kept.zip(states).zip(pulls)
+            {
+                let [r, z, n] = thirds(gates, hidden);
+                let [_, _, recurrent_n] = thirds(recurrent, hidden);
+                let (dr, rest) = dgates.split_at_mut(hidden);
+                let (dz, dn) = rest.split_at_mut(hidden);
+                let (dn, h, dstate, dh) = (
+                    &mut dn[..hidden],
+                    &h[..hidden],
+                    &dstate[..hidden],
+                    &mut dh[..hidden],
+                );
+                for i in 0..hidden {
+                    let d = dstate[i];
+                    dn[i] = d * (1.0 - z[i]) * (1.0 - n[i] * n[i]);
+                    dz[i] = d * (h[i] - n[i]) * z[i] * (1.0 - z[i]);
+                    dr[i] = dn[i] * recurrent_n[i] * r[i] * (1.0 - r[i]);
+                    dh[i] = d * z[i];
+                }
+                let (same, last) = drecurrent.split_at_mut(2 * hidden);
+                same[..hidden].copy_from_slice(dr);
+                same[hidden..].copy_from_slice(dz);
+                for ((last, dn), r) in last.iter_mut().zip(dn).zip(r) {
+                    *last = *dn * r;
+                }
+            }
+        },
+    );
 }
 
-fn through_gates(sizes: Sizes, h: &[f32], dstate: &[f32], kept: &Kept) -> Gates {
-    let hidden = sizes.hidden;
-    let (mut dgates, mut drecurrent) = (vec![0.0; 3 * h.len()], vec![0.0; 3 * h.len()]);
-    let mut dh = vec![0.0; h.len()];
-    for b in 0..h.len() / hidden {
-        let gates = &kept.gates[b * 3 * hidden..(b + 1) * 3 * hidden];
-        let dgates = &mut dgates[b * 3 * hidden..(b + 1) * 3 * hidden];
-        let drecurrent = &mut drecurrent[b * 3 * hidden..(b + 1) * 3 * hidden];
-        for i in 0..hidden {
-            let (r, z, n) = (gates[i], gates[hidden + i], gates[2 * hidden + i]);
-            let d = dstate[b * hidden + i];
-            let dn = d * (1.0 - z) * (1.0 - n * n);
-            let dz = d * (h[b * hidden + i] - n) * z * (1.0 - z);
-            let dr = dn * kept.recurrent_n[b * hidden + i] * r * (1.0 - r);
-            dh[b * hidden + i] = d * z;
-            (dgates[i], dgates[hidden + i], dgates[2 * hidden + i]) = (dr, dz, dn);
-            (
-                drecurrent[i],
-                drecurrent[hidden + i],
-                drecurrent[2 * hidden + i],
-            ) = (dr, dz, dn * r);
-        }
-    }
-    Gates {
-        dgates,
-        drecurrent,
-        dh,
-    }
+/// The parts of r, z and n.
+#[inline(always)]
+fn thirds(row: &[f32], hidden: usize) -> [&[f32]; 3] {
+    [
+        &row[..hidden],
+        &row[hidden..2 * hidden],
+        &row[2 * hidden..3 * hidden],
+    ]
+}
+
+/// Rows of some steps: what went in, what came out, and the gradients of the products.
+pub struct Rows<'a> {
+    /// States before, `(rows, hidden)`.
+    pub h: &'a [f32],
+    /// Inputs, `(rows, inputs)`.
+    pub x: &'a [f32],
+    /// States after, `(rows, hidden)`.
+    pub state: &'a [f32],
+    /// What [`step`] filled.
+    pub pull: &'a Pull,
+}
+
+/// Gradient of the flat weights: one product a weight over all rows of `each`, the largest shared by two tasks.
+pub fn weights(sizes: Sizes, each: &[Rows]) -> Vec<f32> {
+    let Sizes { inputs, hidden, .. } = sizes;
+    let (gates, head, maps) = (3 * hidden, sizes.head(), sizes.maps());
+    let mut flat = vec![0.0; sizes.parameters()];
+    let mut rest = &mut flat[..];
+    let [
+        input,
+        recurrent,
+        input_bias,
+        recurrent_bias,
+        head_weight,
+        head_bias,
+        bases,
+    ] = sizes.parts().map(|len| {
+        let (part, tail) = std::mem::take(&mut rest).split_at_mut(len);
+        rest = tail;
+        part
+    });
+    // a (rows, m), of it `take` columns from `from`; b (rows, n).
+    let outer = |(a, m): (&[f32], usize), columns: Range<usize>, (b, n), dw: &mut [f32]| {
+        let shape = (columns.len(), n, a.len() / m);
+        let left = Mat::transposed(&a[columns.start..], m);
+        matmul(shape, left, Mat::rows(b, n), dw, Write::Add);
+    };
+    let half = hidden / 2;
+    let (upper, lower) = recurrent.split_at_mut(half * gates);
+    rayon::join(
+        || {
+            for Rows { h, pull, .. } in each {
+                outer((h, hidden), 0..half, (&pull.recurrent, gates), upper);
+            }
+        },
+        || {
+            for Rows { h, x, state, pull } in each {
+                outer((h, hidden), half..hidden, (&pull.recurrent, gates), lower);
+                outer((x, inputs), 0..inputs, (&pull.gates, gates), input);
+                outer((state, hidden), 0..hidden, (&pull.head, head), head_weight);
+                outer((&pull.mapped, maps), 0..maps, (x, inputs), bases);
+                sum_rows(&pull.gates, input_bias);
+                sum_rows(&pull.recurrent, recurrent_bias);
+                sum_rows(&pull.head, head_bias);
+            }
+        },
+    );
+    flat
 }

@@ -1,119 +1,125 @@
 //! The cell's step: gates, new state, mixture, mean, log-variance.
 
-use super::{Kept, Sizes, Weights};
-use crate::model::kernel::matmul::{Mat, Write, matmul};
-use crate::model::kernel::pointwise::{add_row, exp, sigmoid, tanh};
+use std::ops::Range;
+
+use super::{Sizes, Weights};
+use crate::model::kernel::pointwise::{exp, sigmoid, tanh};
+use crate::model::kernel::rows::{accumulate, affine};
 use crate::model::kernel::vectorised;
 
-/// The output `(B, hidden + 2 Z)`, and what the backward pass needs.
-pub(super) fn step(sizes: Sizes, h: &[f32], x: &[f32], flat: &[f32]) -> (Vec<f32>, Kept) {
-    let w = sizes.weights(flat);
-    let (gates, recurrent_n, state) = gates(sizes, h, x, &w);
+/// What steps leave for the backward pass, a row for each.
+#[derive(Debug)]
+pub struct Tape {
+    gates: Vec<f32>,
+    recurrent: Vec<f32>,
+    head: Vec<f32>,
+    mapped: Vec<f32>,
+}
+
+/// Some rows of a [`Tape`].
+pub struct TapeRows<'a> {
+    /// r, z, n side by side, `(B, 3 hidden)`.
+    pub gates: &'a mut [f32],
+    /// `W_h h + b_h`, `(B, 3 hidden)`.
+    pub recurrent: &'a mut [f32],
+    /// α and the log-variance side by side, `(B, K + Z)`.
+    pub head: &'a mut [f32],
+    /// `M_k x`, `(B, K Z)`.
+    pub mapped: &'a mut [f32],
+}
+
+impl Tape {
+    /// Room for `rows`.
+    pub fn new(sizes: Sizes, rows: usize) -> Self {
+        Self {
+            gates: vec![0.0; rows * 3 * sizes.hidden],
+            recurrent: vec![0.0; rows * 3 * sizes.hidden],
+            head: vec![0.0; rows * sizes.head()],
+            mapped: vec![0.0; rows * sizes.maps()],
+        }
+    }
+
+    /// These rows.
+    pub fn rows(&mut self, sizes: Sizes, rows: Range<usize>) -> TapeRows<'_> {
+        let part = |width: usize| rows.start * width..rows.end * width;
+        TapeRows {
+            gates: &mut self.gates[part(3 * sizes.hidden)],
+            recurrent: &mut self.recurrent[part(3 * sizes.hidden)],
+            head: &mut self.head[part(sizes.head())],
+            mapped: &mut self.mapped[part(sizes.maps())],
+        }
+    }
+}
+
+/// From states `h (B, hidden)` and inputs `x (B, inputs)` to the new `state (B, hidden)` and the `mean (B, Z)`; the
+/// log-variance is left in the tape's head.
+pub fn step(
+    sizes: Sizes,
+    w: &Weights,
+    h: &[f32],
+    x: &[f32],
+    tape: &mut TapeRows,
+    state: &mut [f32],
+    mean: &mut [f32],
+) {
     let Sizes {
         latent,
         inputs,
         hidden,
         mixtures,
     } = sizes;
-    let batch = x.len() / inputs;
-    let head = product(&state, w.head, hidden, w.head_bias);
-    let maps = mixtures * latent;
-    let mut mapped = vec![0.0; batch * maps];
-    matmul(
-        (batch, maps, inputs),
-        Mat::rows(x, inputs),
-        Mat::transposed(w.bases, inputs),
-        &mut mapped,
-        Write::Replace,
-    );
-    let mut mixture = Vec::with_capacity(batch * mixtures);
-    let mut out = vec![0.0; batch * sizes.outputs()];
-    let lines = out
-        .chunks_exact_mut(sizes.outputs())
-        .zip(state.chunks_exact(hidden));
-    let lines = lines
-        .zip(head.chunks_exact(mixtures + latent))
-        .zip(mapped.chunks_exact(maps));
-    for (((out, state), head), mapped) in lines {
-        out[..hidden].copy_from_slice(state);
-        let (logits, log_var) = head.split_at(mixtures);
-        let weights = softmax(logits);
-        let mean = &mut out[hidden..hidden + latent];
-        for (weight, mapped) in weights.iter().zip(mapped.chunks_exact(latent)) {
+    affine(x, inputs, w.input, w.input_bias, tape.gates);
+    affine(h, hidden, w.recurrent, w.recurrent_bias, tape.recurrent);
+    through_gates(hidden, h, tape, state);
+    affine(state, hidden, w.head, w.head_bias, tape.head);
+    tape.mapped.fill(0.0);
+    accumulate(x, inputs, &w.across_bases, tape.mapped);
+    let lines = tape.head.chunks_exact_mut(mixtures + latent);
+    let lines = lines.zip(tape.mapped.chunks_exact(mixtures * latent));
+    for (mean, (head, mapped)) in mean.chunks_exact_mut(latent).zip(lines) {
+        softmax(&mut head[..mixtures]);
+        mean.fill(0.0);
+        for (weight, mapped) in head.iter().zip(mapped.chunks_exact(latent)) {
             for (m, v) in mean.iter_mut().zip(mapped) {
                 *m += weight * v;
             }
         }
-        mixture.extend(weights);
-        out[hidden + latent..].copy_from_slice(log_var);
     }
-    (
-        out,
-        Kept {
-            gates,
-            recurrent_n,
-            mixture,
-            mapped,
-        },
-    )
 }
 
-/// `x (B, inputs) · w (inputs, n) + bias (n)`.
-fn product(x: &[f32], w: &[f32], inputs: usize, bias: &[f32]) -> Vec<f32> {
-    let (batch, n) = (x.len() / inputs, bias.len());
-    let mut out = vec![0.0; batch * n];
-    matmul(
-        (batch, n, inputs),
-        Mat::rows(x, inputs),
-        Mat::rows(w, n),
-        &mut out,
-        Write::Replace,
-    );
-    add_row(&mut out, bias);
-    out
-}
-
-/// r, z, n side by side; `W_hn h + b_hn`; and the new state.
-fn gates(sizes: Sizes, h: &[f32], x: &[f32], w: &Weights) -> (Vec<f32>, Vec<f32>, Vec<f32>) {
-    let hidden = sizes.hidden;
-    let mut gates = product(x, w.input, sizes.inputs, w.input_bias);
-    let recurrent = product(h, w.recurrent, hidden, w.recurrent_bias);
-    let mut state = vec![0.0; h.len()];
+/// r, z, n in place of what the input says of them, and the new state.
+fn through_gates(hidden: usize, h: &[f32], tape: &mut TapeRows, state: &mut [f32]) {
     vectorised(
         #[inline(always)]
         || {
-            let lines = gates
-                .chunks_exact_mut(3 * hidden)
-                .zip(recurrent.chunks_exact(3 * hidden));
-            let lines = lines
-                .zip(h.chunks_exact(hidden))
-                .zip(state.chunks_exact_mut(hidden));
-            for (((gates, recurrent), h), state) in lines {
+            let lines = tape.gates.chunks_exact_mut(3 * hidden);
+            let lines = lines.zip(tape.recurrent.chunks_exact(3 * hidden));
+            let states = h.chunks_exact(hidden).zip(state.chunks_exact_mut(hidden));
+            for ((gates, recurrent), (h, state)) in lines.zip(states) {
                 let (r, rest) = gates.split_at_mut(hidden);
                 let (z, n) = rest.split_at_mut(hidden);
+                let (recurrent_r, rest) = recurrent.split_at(hidden);
+                let (recurrent_z, recurrent_n) = rest.split_at(hidden);
                 for i in 0..hidden {
-                    r[i] = sigmoid(r[i] + recurrent[i]);
-                    z[i] = sigmoid(z[i] + recurrent[hidden + i]);
-                    n[i] = tanh(n[i] + r[i] * recurrent[2 * hidden + i]);
+                    r[i] = sigmoid(r[i] + recurrent_r[i]);
+                    z[i] = sigmoid(z[i] + recurrent_z[i]);
+                    n[i] = tanh(n[i] + r[i] * recurrent_n[i]);
                     state[i] = (1.0 - z[i]) * n[i] + z[i] * h[i];
                 }
             }
         },
     );
-    let recurrent_n = recurrent
-        .chunks_exact(3 * hidden)
-        .flat_map(|line| line[2 * hidden..].iter().copied())
-        .collect();
-    (gates, recurrent_n, state)
 }
 
-/// exp(xᵢ) / Σ exp(xⱼ).
-fn softmax(logits: &[f32]) -> Vec<f32> {
+/// exp(xᵢ) / Σ exp(xⱼ), in place.
+fn softmax(logits: &mut [f32]) {
     let top = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
-    let mut weights: Vec<f32> = logits.iter().map(|v| exp(v - top)).collect();
-    let sum: f32 = weights.iter().sum();
-    for weight in &mut weights {
-        *weight /= sum;
+    let mut sum = 0.0;
+    for logit in &mut *logits {
+        *logit = exp(*logit - top);
+        sum += *logit;
     }
-    weights
+    for logit in logits {
+        *logit /= sum;
+    }
 }

@@ -1,0 +1,83 @@
+//! What the benches share: medians, a synthetic batch, and how a number is printed.
+
+use std::time::Instant;
+
+use candle_core::{Device, Tensor};
+use poescope::model::Model;
+use poescope::model::config::Config;
+use poescope::train::batch::Batch;
+use serde_json::json;
+
+/// Median seconds of `runs` calls after `warm` that are not counted.
+pub fn median_secs(warm: usize, runs: usize, mut f: impl FnMut()) -> f64 {
+    (0..warm).for_each(|_| f());
+    let mut secs: Vec<f64> = (0..runs)
+        .map(|_| {
+            let start = Instant::now();
+            f();
+            start.elapsed().as_secs_f64()
+        })
+        .collect();
+    secs.sort_by(f64::total_cmp);
+    secs[runs / 2]
+}
+
+/// Whether `--json` was asked for: one object a number, for a script to read.
+pub fn json_wanted() -> bool {
+    std::env::args().any(|argument| argument == "--json")
+}
+
+/// Prints a median under the name that scripts know it by.
+#[expect(clippy::print_stdout, reason = "a bench speaks to its user")]
+pub fn report(id: &str, secs: f64, runs: usize, what: &str) {
+    if json_wanted() {
+        println!("{}", json!({"id": id, "ms": secs * 1e3, "runs": runs}));
+    } else {
+        println!("{id:<16} {:>9.3} ms  {what}", secs * 1e3);
+    }
+}
+
+/// Numbers in [-1, 1] that repeat nothing.
+pub fn numbers(n: usize, seed: u64) -> Vec<f32> {
+    (0..n as u64)
+        .map(|i| {
+            let x = (i + (seed << 32) + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+            let x = (x ^ (x >> 31)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            ((x >> 40) as f32) / 8_388_608.0 - 1.0
+        })
+        .collect()
+}
+
+/// A named model with two-step KL and weights drawn from a fixed seed.
+pub fn model(name: &str) -> Model {
+    let mut config = Config::named(name).expect("a model of that name");
+    config.training.n_step = 2;
+    Model::new(config, 1, &Device::Cpu).expect("a model")
+}
+
+/// A batch that no dataset is needed for: frames in [0, 1], windows and controls in [-1, 1], every expert on.
+pub fn batch(model: &Model, episodes: usize, beliefs: usize) -> Batch {
+    let config = &model.config;
+    let tensor = |shape: &[usize], seed: u64| {
+        Tensor::from_vec(numbers(shape.iter().product(), seed), shape, &Device::Cpu)
+            .expect("a tensor")
+    };
+    let rows = episodes * beliefs;
+    let seen = |(i, encoder): (usize, &poescope::model::encoder::Encoder)| {
+        let x = tensor(&[rows, encoder.inputs()], i as u64);
+        if i == 0 {
+            x.affine(0.5, 0.5).expect("a tensor")
+        } else {
+            x
+        }
+    };
+    let shape = (episodes, beliefs, config.switches());
+    Batch {
+        episodes,
+        beliefs,
+        seen: model.encoders.iter().enumerate().map(seen).collect(),
+        controls: tensor(&[episodes, beliefs - 1, Config::CONTROL], 10),
+        alphas: Tensor::ones(shape, candle_core::DType::F32, &Device::Cpu).expect("a tensor"),
+        noise: tensor(&[episodes, beliefs, config.latent], 11),
+    }
+}
