@@ -83,6 +83,11 @@ fn window(config: &Config, channels: usize) -> (Arc<Chain>, Parameters) {
 }
 
 impl Decoder {
+    /// Its layers.
+    pub fn chain(&self) -> &Arc<Chain> {
+        &self.chain
+    }
+
     /// The decoder of frames.
     pub fn of_images(
         config: &Config,

@@ -82,6 +82,11 @@ pub(super) fn row_windows(length: usize, channels: usize) -> Windows {
 }
 
 impl Encoder {
+    /// Its layers.
+    pub fn chain(&self) -> &Arc<Chain> {
+        &self.chain
+    }
+
     /// The encoder of frames.
     pub fn of_images(
         config: &Config,

@@ -64,8 +64,13 @@ impl Windows {
             || {
                 self.runs(|in_image, in_rows, length, zero_before, zero_after| {
                     rows[in_rows - zero_before..in_rows].fill(0.0);
-                    rows[in_rows..in_rows + length]
-                        .copy_from_slice(&image[in_image..in_image + length]);
+                    let (to, from) = (&mut rows[in_rows..][..length], &image[in_image..][..length]);
+                    // Of a known length a copy is one or two moves; the first layers have such runs by the million.
+                    match length {
+                        8 => to[..8].copy_from_slice(&from[..8]),
+                        12 => to[..12].copy_from_slice(&from[..12]),
+                        _ => to.copy_from_slice(from),
+                    }
                     rows[in_rows + length..in_rows + length + zero_after].fill(0.0);
                 });
             },
@@ -78,9 +83,11 @@ impl Windows {
             #[inline(always)]
             || {
                 self.runs(|in_image, in_rows, length, _, _| {
-                    let source = &rows[in_rows..in_rows + length];
-                    for (to, &from) in image[in_image..in_image + length].iter_mut().zip(source) {
-                        *to += from;
+                    let (to, from) = (&mut image[in_image..][..length], &rows[in_rows..][..length]);
+                    match length {
+                        8 => add(&mut to[..8], &from[..8]),
+                        12 => add(&mut to[..12], &from[..12]),
+                        _ => add(to, from),
                     }
                 });
             },
@@ -113,6 +120,13 @@ impl Windows {
                 }
             }
         }
+    }
+}
+
+#[inline(always)]
+fn add(to: &mut [f32], from: &[f32]) {
+    for (to, &from) in to.iter_mut().zip(from) {
+        *to += from;
     }
 }
 
