@@ -1,11 +1,10 @@
-//! What the benches share: medians, a synthetic batch, and how a number is printed.
+//! What the benches share: medians, a model, and how a number is printed.
 
 use std::time::Instant;
 
-use candle_core::{Device, Tensor};
+use candle_core::Device;
 use poescope::model::Model;
-use poescope::model::config::Config;
-use poescope::train::batch::Batch;
+use poescope::model::config::{Config, Preset};
 use serde_json::json;
 
 /// Median seconds of `runs` calls after `warm` that are not counted.
@@ -48,36 +47,8 @@ pub fn numbers(n: usize, seed: u64) -> Vec<f32> {
         .collect()
 }
 
-/// A named model with two-step KL and weights drawn from a fixed seed.
+/// A named model as the released script trains it, its weights drawn from a fixed seed.
 pub fn model(name: &str) -> Model {
-    let mut config = Config::named(name).expect("a model of that name");
-    config.training.n_step = 2;
+    let config = Config::preset(name, Preset::Released).expect("a model of that name");
     Model::new(config, 1, &Device::Cpu).expect("a model")
-}
-
-/// A batch that no dataset is needed for: frames in [0, 1], windows and controls in [-1, 1], every expert on.
-pub fn batch(model: &Model, episodes: usize, beliefs: usize) -> Batch {
-    let config = &model.config;
-    let tensor = |shape: &[usize], seed: u64| {
-        Tensor::from_vec(numbers(shape.iter().product(), seed), shape, &Device::Cpu)
-            .expect("a tensor")
-    };
-    let rows = episodes * beliefs;
-    let seen = |(i, encoder): (usize, &poescope::model::encoder::Encoder)| {
-        let x = tensor(&[rows, encoder.inputs()], i as u64);
-        if i == 0 {
-            x.affine(0.5, 0.5).expect("a tensor")
-        } else {
-            x
-        }
-    };
-    let shape = (episodes, beliefs, config.switches());
-    Batch {
-        episodes,
-        beliefs,
-        seen: model.encoders.iter().enumerate().map(seen).collect(),
-        controls: tensor(&[episodes, beliefs - 1, Config::CONTROL], 10),
-        alphas: Tensor::ones(shape, candle_core::DType::F32, &Device::Cpu).expect("a tensor"),
-        noise: tensor(&[episodes, beliefs, config.latent], 11),
-    }
 }

@@ -14,12 +14,12 @@ fn observations(inspector: &Inspector, beliefs: usize) -> Observations {
     let controls = common::numbers(2 * (beliefs - 1), 9);
     Observations {
         beliefs,
-        experts: inspector
+        streams: inspector
             .model()
             .encoders
             .iter()
             .enumerate()
-            .map(|(i, encoder)| common::numbers(beliefs * encoder.inputs(), i as u64))
+            .map(|(i, encoder)| common::numbers(beliefs * encoder.inputs(0), i as u64))
             .collect(),
         controls: controls.as_chunks().0.to_vec(),
     }
@@ -73,7 +73,7 @@ fn main() {
     );
     let frame = Observations {
         beliefs: 1,
-        experts: vec![seen.experts[0][..vhp.model().encoders[0].inputs()].to_vec()],
+        streams: vec![seen.streams[0][..vhp.model().encoders[0].inputs(0)].to_vec()],
         controls: Vec::new(),
     };
     timed("encode_frame", "one frame to a Gaussian", || {

@@ -18,6 +18,7 @@ use crate::episode::EpisodeSource;
 use crate::model::Model;
 use crate::model::checkpoint;
 use crate::model::config::Config;
+use crate::model::kernel::memory::keep_pages;
 use crate::train::schedule::Budget;
 use crate::train::state::{Origin, STATE, State};
 use crate::train::totals::Totals;
@@ -39,6 +40,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
         .num_threads(threads)
         .build_global()
         .context("starting threads")?;
+    keep_pages();
     let dataset = Dataset::open_with(&args.data, &args.mapping.topics)?;
     let origin = match origin {
         Some(origin) => same_run(args, origin, &dataset)?,

@@ -85,6 +85,11 @@ fn window(config: &Config, channels: usize) -> (Arc<Chain>, Parameters) {
 }
 
 impl Decoder {
+    /// Its layers.
+    pub fn chain(&self) -> &Arc<Chain> {
+        &self.chain
+    }
+
     /// The decoder of `stream`.
     pub fn new(config: &Config, stream: Expert, draw: &mut Draw, device: &Device) -> Result<Self> {
         let (chain, parameters) = match stream {

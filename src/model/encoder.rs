@@ -90,6 +90,11 @@ pub(super) fn row_windows(length: usize, channels: usize) -> Windows {
 }
 
 impl Encoder {
+    /// The layers of each of its networks.
+    pub fn chains(&self) -> impl Iterator<Item = &Arc<Chain>> {
+        self.parts.iter().map(|part| &part.chain)
+    }
+
     /// The encoder of `expert`.
     pub fn new(config: &Config, expert: Expert, draw: &mut Draw, device: &Device) -> Result<Self> {
         let streams = expert.streams();

@@ -185,6 +185,11 @@ impl Network {
         &self.theta
     }
 
+    /// Which of them are normed.
+    pub fn norm(&self) -> &WeightNorm {
+        &self.parameters.norm
+    }
+
     /// The weights that layers compute with, differentiable with respect to [`Self::theta`].
     pub fn folded(&self) -> Result<Tensor> {
         self.theta

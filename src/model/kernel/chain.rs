@@ -110,6 +110,12 @@ impl Chain {
         &self.layers
     }
 
+    /// Samples that layer `index` multiplies at once, of a part of `samples`.
+    pub fn at_once(&self, index: usize, samples: usize) -> usize {
+        let segment = self.segments.iter().find(|s| s.layers.contains(&index));
+        segment.map_or(samples, |segment| segment.room(samples))
+    }
+
     /// Numbers in the flat parameter tensor.
     pub fn parameters(&self) -> usize {
         self.parameters

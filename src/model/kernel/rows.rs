@@ -8,7 +8,7 @@ use pulp::{Simd, WithSimd};
 use super::arch;
 
 /// Rows of the matrix that are multiplied in at once: with [`COLUMNS`] they stay in the first-level cache.
-const DEPTH: usize = 8;
+const DEPTH: usize = 4;
 /// Columns of the matrix that are gone through at once.
 const COLUMNS: usize = 256;
 
@@ -69,62 +69,99 @@ impl WithSimd for Accumulate<'_> {
             while depth + DEPTH <= k {
                 let w: [&[f32]; DEPTH] =
                     std::array::from_fn(|i| &w[(depth + i) * n..][columns.clone()]);
-                let mut pairs = x.chunks_exact(2 * k);
-                let mut out_pairs = out.chunks_exact_mut(2 * n);
-                for (x, out) in pairs.by_ref().zip(out_pairs.by_ref()) {
-                    let (x0, x1) = x.split_at(k);
-                    let (out0, out1) = out.split_at_mut(n);
-                    let out = [&mut out0[columns.clone()], &mut out1[columns.clone()]];
-                    add(simd, [&x0[depth..], &x1[depth..]], w, out);
+                let (mut fours, mut out_fours) =
+                    (x.chunks_exact(4 * k), out.chunks_exact_mut(4 * n));
+                for (x, out) in fours.by_ref().zip(out_fours.by_ref()) {
+                    let (out01, out23) = out.split_at_mut(2 * n);
+                    let (out0, out1) = out01.split_at_mut(n);
+                    let (out2, out3) = out23.split_at_mut(n);
+                    let out = [out0, out1, out2, out3].map(|row| &mut row[columns.clone()]);
+                    let x = std::array::from_fn(|r| four(&x[r * k + depth..]));
+                    add_to_four(simd, x, w, out);
                 }
-                let (x, out) = (pairs.remainder(), out_pairs.into_remainder());
-                if !x.is_empty() {
-                    add(simd, [&x[depth..]], w, [&mut out[columns.clone()]]);
+                let rest = fours.remainder().chunks_exact(k);
+                for (x, out) in rest.zip(out_fours.into_remainder().chunks_exact_mut(n)) {
+                    add_to_one(simd, four(&x[depth..]), w, &mut out[columns.clone()]);
                 }
                 depth += DEPTH;
             }
             for depth in depth..k {
-                let w = [&w[depth * n..][columns.clone()]];
+                let w = &w[depth * n..][columns.clone()];
                 for (x, out) in x.chunks_exact(k).zip(out.chunks_exact_mut(n)) {
-                    add(simd, [&x[depth..]], w, [&mut out[columns.clone()]]);
+                    add_scaled(simd, x[depth], w, &mut out[columns.clone()]);
                 }
             }
         }
     }
 }
 
-/// Adds `D` rows of the matrix, each times its number of `x`, to each of `R` rows of `out`.
 #[inline(always)]
-fn add<S: Simd, const R: usize, const D: usize>(
-    simd: S,
-    x: [&[f32]; R],
-    w: [&[f32]; D],
-    out: [&mut [f32]; R],
-) {
-    let factors: [[S::f32s; D]; R] =
-        std::array::from_fn(|r| std::array::from_fn(|d| simd.splat_f32s(x[r][d])));
-    let whole: [&[S::f32s]; D] = w.map(|row| S::as_simd_f32s(row).0);
-    let len = whole[0].len();
-    let whole = whole.map(|row| &row[..len]);
-    let mut out = out.map(S::as_mut_simd_f32s);
-    for j in 0..len {
-        for (factors, (sums, _)) in factors.iter().zip(&mut out) {
-            let mut sum = sums[j];
-            for (factor, row) in factors.iter().zip(&whole) {
-                sum = simd.mul_add_e_f32s(*factor, row[j], sum);
-            }
-            sums[j] = sum;
+fn four(x: &[f32]) -> [f32; DEPTH] {
+    [x[0], x[1], x[2], x[3]]
+}
+
+/// `sum + x₀ w₀ + x₁ w₁ + x₂ w₂ + x₃ w₃`, in that order.
+#[inline(always)]
+fn chain<S: Simd>(simd: S, x: [S::f32s; DEPTH], w: [S::f32s; DEPTH], sum: S::f32s) -> S::f32s {
+    let sum = simd.mul_add_e_f32s(x[0], w[0], sum);
+    let sum = simd.mul_add_e_f32s(x[1], w[1], sum);
+    let sum = simd.mul_add_e_f32s(x[2], w[2], sum);
+    simd.mul_add_e_f32s(x[3], w[3], sum)
+}
+
+/// Four rows of the matrix, each times its number of `x`, added to one row.
+#[inline(always)]
+fn add_to_one<S: Simd>(simd: S, x: [f32; DEPTH], w: [&[f32]; DEPTH], out: &mut [f32]) {
+    let x = x.map(|x| simd.splat_f32s(x));
+    let [(w0, e0), (w1, e1), (w2, e2), (w3, e3)] = w.map(S::as_simd_f32s);
+    let (sums, end) = S::as_mut_simd_f32s(out);
+    for ((((sum, &w0), &w1), &w2), &w3) in sums.iter_mut().zip(w0).zip(w1).zip(w2).zip(w3) {
+        *sum = chain(simd, x, [w0, w1, w2, w3], *sum);
+    }
+    if !end.is_empty() {
+        let w = [e0, e1, e2, e3].map(|row| simd.partial_load_f32s(row));
+        let sum = chain(simd, x, w, simd.partial_load_f32s(end));
+        simd.partial_store_f32s(end, sum);
+    }
+}
+
+/// The same for four rows at once, which share what is read of the matrix. The numbers of `x` fill sixteen registers.
+#[inline(always)]
+fn add_to_four<S: Simd>(simd: S, x: [[f32; DEPTH]; 4], w: [&[f32]; DEPTH], out: [&mut [f32]; 4]) {
+    let [x0, x1, x2, x3] = x.map(|x| x.map(|x| simd.splat_f32s(x)));
+    let [(w0, e0), (w1, e1), (w2, e2), (w3, e3)] = w.map(S::as_simd_f32s);
+    let [(s0, end0), (s1, end1), (s2, end2), (s3, end3)] = out.map(S::as_mut_simd_f32s);
+    let sums = s0.iter_mut().zip(s1).zip(s2).zip(s3);
+    let rows = w0.iter().zip(w1).zip(w2).zip(w3);
+    for ((((s0, s1), s2), s3), (((&w0, &w1), &w2), &w3)) in sums.zip(rows) {
+        let w = [w0, w1, w2, w3];
+        *s0 = chain(simd, x0, w, *s0);
+        *s1 = chain(simd, x1, w, *s1);
+        *s2 = chain(simd, x2, w, *s2);
+        *s3 = chain(simd, x3, w, *s3);
+    }
+    if !end0.is_empty() {
+        let w = [e0, e1, e2, e3].map(|row| simd.partial_load_f32s(row));
+        for (x, end) in [(x0, end0), (x1, end1), (x2, end2), (x3, end3)] {
+            let sum = chain(simd, x, w, simd.partial_load_f32s(end));
+            simd.partial_store_f32s(end, sum);
         }
     }
-    let ends = w.map(|row| S::as_simd_f32s(row).1);
-    if !ends[0].is_empty() {
-        for (factors, (_, sums)) in factors.iter().zip(&mut out) {
-            let mut sum = simd.partial_load_f32s(sums);
-            for (factor, end) in factors.iter().zip(&ends) {
-                sum = simd.mul_add_e_f32s(*factor, simd.partial_load_f32s(end), sum);
-            }
-            simd.partial_store_f32s(sums, sum);
-        }
+}
+
+/// One row of the matrix, times `x`, added to a row.
+#[inline(always)]
+fn add_scaled<S: Simd>(simd: S, x: f32, w: &[f32], out: &mut [f32]) {
+    let x = simd.splat_f32s(x);
+    let (whole, end) = S::as_simd_f32s(w);
+    let (sums, sums_end) = S::as_mut_simd_f32s(out);
+    for (sum, &w) in sums.iter_mut().zip(whole) {
+        *sum = simd.mul_add_e_f32s(x, w, *sum);
+    }
+    if !end.is_empty() {
+        let sum = simd.partial_load_f32s(sums_end);
+        let sum = simd.mul_add_e_f32s(x, simd.partial_load_f32s(end), sum);
+        simd.partial_store_f32s(sums_end, sum);
     }
 }
 
