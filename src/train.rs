@@ -54,8 +54,8 @@ pub enum TrainError {
     Data(#[from] DataError),
     /// A loss, a gradient or a weight was no number. The run folder keeps the last checkpoint from before it.
     #[error(
-        "update {update}: {what} is not finite{}; the run folder has the last good checkpoint: leave out the odd episode, or \
-         lower `training.learning_rate` in its config.toml, and go on with --resume",
+        "update {update}: {what} is not finite{}; a checkpoint in the run folder is from before it: leave out the odd \
+         episode, or lower `training.learning_rate` in its config.toml, and go on with --resume",
         among(episodes)
     )]
     NotFinite {
