@@ -70,9 +70,9 @@ fn forward_pass() {
     let encoders = &inspector.model().encoders;
     let seen = Observations {
         beliefs,
-        experts: vec![
-            numbers(beliefs * encoders[0].inputs(), 0.37),
-            numbers(beliefs * encoders[1].inputs(), 0.11),
+        streams: vec![
+            numbers(beliefs * encoders[0].inputs(0), 0.37),
+            numbers(beliefs * encoders[1].inputs(0), 0.11),
         ],
         controls: vec![[0.3, -0.2], [0.1, 0.4]],
     };
