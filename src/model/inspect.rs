@@ -113,7 +113,7 @@ impl<M: Borrow<Model>> Inspector<M> {
         })?;
         let row = Row::of(sizes);
         Ok(rows
-            .chunks_exact(beliefs * row.len())
+            .chunks_exact(beliefs * row.width())
             .map(|rows| {
                 let [prior_mean, prior_log_var, mean, log_var, _, hidden] = row.columns(rows);
                 let trace = |mean, log_var| GaussianTrace {

@@ -242,7 +242,7 @@ impl CustomOp3 for Cell {
                 let dmean = part(dout, sizes.hidden, sizes.latent);
                 let dlog_var = part(dout, sizes.hidden + sizes.latent, sizes.latent);
                 let mut pull = Pull::new(sizes, rows);
-                let up = Upstream {
+                let mut up = Upstream {
                     state: &mut dstate,
                     mean: &dmean,
                     log_var: &dlog_var,
@@ -252,7 +252,7 @@ impl CustomOp3 for Cell {
                     (&w_parts, &transposes),
                     h,
                     &tape.rows(sizes, 0..rows),
-                    up,
+                    &mut up,
                     &mut pull.rows(sizes, 0..rows),
                     (dh, dx),
                 );

@@ -71,14 +71,14 @@ impl Row {
     }
 
     /// Numbers of a row.
-    pub fn len(self) -> usize {
+    pub fn width(self) -> usize {
         5 * self.latent + self.hidden
     }
 
     /// The parts of all `rows`, each on its own.
     pub fn columns(self, rows: &[f32]) -> [Vec<f32>; 6] {
         self.parts().map(|(start, len)| {
-            rows.chunks_exact(self.len())
+            rows.chunks_exact(self.width())
                 .flat_map(|row| row[start..start + len].iter().copied())
                 .collect()
         })
@@ -188,7 +188,7 @@ pub fn rollout(
 
 fn run_parts(sizes: Sizes, weights: &[f32], inputs: &Inputs, keep: bool) -> (Vec<f32>, Vec<Run>) {
     let w = sizes.weights(weights);
-    let width = inputs.steps * Row::of(sizes).len();
+    let width = inputs.steps * Row::of(sizes).width();
     let mut out = vec![0.0; inputs.sequences() * width];
     let each = apart(inputs.sequences());
     let size = inputs.sequences().div_ceil(each.len().max(1)).max(1);
@@ -255,7 +255,7 @@ impl CustomOp2 for Recurrence {
         inputs.check(self.sizes, w)?;
         let (out, runs) = run_parts(self.sizes, w, &inputs, true);
         *self.kept.0.lock().unwrap_or_else(PoisonError::into_inner) = runs;
-        let shape = Shape::from((batch, steps, Row::of(self.sizes).len()));
+        let shape = Shape::from((batch, steps, Row::of(self.sizes).width()));
         Ok((CpuStorage::F32(out), shape))
     }
 
@@ -278,7 +278,7 @@ impl CustomOp2 for Recurrence {
         let across = Transposes::of(sizes, &w_parts);
         let mut runs = self.kept.0.lock().unwrap_or_else(PoisonError::into_inner);
         let each = apart(inputs.sequences());
-        let width = inputs.sequences().div_ceil(each.len().max(1)) * steps * Row::of(sizes).len();
+        let width = inputs.sequences().div_ceil(each.len().max(1)) * steps * Row::of(sizes).width();
         let back: Vec<_> = each
             .zip(runs.par_iter_mut())
             .zip(out_values.par_chunks(width))

@@ -83,12 +83,12 @@ pub fn step(
     (w, across): (&Weights, &Transposes),
     h: &[f32],
     tape: &TapeRows,
-    up: Upstream,
+    up: &mut Upstream,
     pull: &mut PullRows,
     (dh, dx): (&mut [f32], &mut [f32]),
 ) {
     let gates = 3 * sizes.hidden;
-    through_mixture(sizes, &up, tape, pull);
+    through_mixture(sizes, up, tape, pull);
     accumulate(pull.head, sizes.head(), &across.head, up.state);
     through_gates(sizes.hidden, h, up.state, tape, pull, dh);
     accumulate(pull.recurrent, gates, &across.recurrent, dh);

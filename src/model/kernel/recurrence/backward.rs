@@ -56,7 +56,7 @@ pub fn through(
             break;
         }
         let douts = dout
-            .chunks_exact(Row::of(sizes).len())
+            .chunks_exact(Row::of(sizes).width())
             .skip(t)
             .step_by(steps);
         let states = carried.state.chunks_exact(hidden).zip(douts);
@@ -66,7 +66,7 @@ pub fn through(
             }
         }
         let rows = (t - 1) * batch..t * batch;
-        let up = Upstream {
+        let mut up = Upstream {
             state: &mut dstate,
             mean: &carried.prior_mean,
             log_var: &carried.prior_log_var,
@@ -77,7 +77,7 @@ pub fn through(
             w,
             h,
             &run.tape.rows(sizes, rows.clone()),
-            up,
+            &mut up,
             &mut pull.rows(sizes, rows),
             (&mut carried.state, &mut carried.x),
         );
@@ -106,7 +106,7 @@ fn unfuse(
                 let at = b * steps + t;
                 let alpha = inputs.alphas[(at + 1) * switches - 1];
                 let place = at * latent..(at + 1) * latent;
-                let here = at * row.len()..(at + 1) * row.len();
+                let here = at * row.width()..(at + 1) * row.width();
                 let [prior_mean, prior_log_var, _, log_var, _, _] = row.split(&out[here.clone()]);
                 let [own_mean, own_log_var, dmean, dlog_var, dz, _] = row.split(&dout[here]);
                 let precision = &run.evidence.precision[place.clone()];

@@ -123,7 +123,7 @@ impl Run {
         let batch = inputs.sequences();
         let states = &self.states[t * batch * hidden..(t + 1) * batch * hidden];
         let rows = out
-            .chunks_exact_mut(Row::of(sizes).len())
+            .chunks_exact_mut(Row::of(sizes).width())
             .skip(t)
             .step_by(steps);
         let given = prior
@@ -170,7 +170,7 @@ impl Run {
         let (latent, control) = (sizes.latent, sizes.inputs - sizes.latent);
         let batch = inputs.sequences();
         let rows = out
-            .chunks_exact(Row::of(sizes).len())
+            .chunks_exact(Row::of(sizes).width())
             .skip(t)
             .step_by(inputs.steps);
         let each = (inputs.steps - 1) * control;
