@@ -76,8 +76,9 @@ fn main() {
         streams: vec![seen.streams[0][..vhp.model().encoders[0].inputs(0)].to_vec()],
         controls: Vec::new(),
     };
+    let vision = Inspector::new(common::model("v")).expect("a model");
     timed("encode_frame", "one frame to a Gaussian", || {
-        vhp.encode(&frame).expect("a Gaussian");
+        vision.encode(&frame).expect("a Gaussian");
     });
     timed("decode_1", "one latent to a frame", || {
         vhp.decode(0, &latents[..16]).expect("a frame");

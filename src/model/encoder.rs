@@ -152,6 +152,13 @@ impl Encoder {
         weights: &[Tensor],
         train: bool,
     ) -> Result<DiagGaussian> {
+        if observations.len() != self.streams {
+            candle_core::bail!(
+                "an encoder of {} streams got {}",
+                self.streams,
+                observations.len()
+            );
+        }
         let mut said = self
             .parts
             .iter()
