@@ -181,9 +181,8 @@ mod tests {
         );
         assert!((training.kl_weight(0) - 1.0).abs() < 1e-12);
         training.kl_annealing = 4;
-        assert_eq!(
-            [0, 1, 3, 9].map(|epoch| training.kl_weight(epoch)),
-            [0.25, 0.5, 1.0, 1.0]
-        );
+        for (epoch, weight) in [(0, 0.25), (1, 0.5), (3, 1.0), (9, 1.0)] {
+            assert!((training.kl_weight(epoch) - weight).abs() < 1e-12);
+        }
     }
 }
