@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use super::{Chain, Gradients, of_group};
+use super::backward::Gradients;
+use super::{Chain, of_group};
 use crate::model::kernel::layer::Layer;
 
 impl Chain {
