@@ -31,7 +31,8 @@ const EPISODES: usize = 64;
 pub fn validate(model: &Model, val: Episodes) -> Result<Validation, TrainError> {
     let val = val.first(EPISODES);
     let inspector = Inspector::new(model)?;
-    let phase = Phase::of(&model.config.training, 0, 1, 1.0);
+    // As the schedules end, so that one epoch's loss compares with another's.
+    let phase = Phase::of(&model.config.training, u64::MAX - 1, 1, 1.0);
     let mut validation = Validation::default();
     let mut seen = 0;
     // In batches, so that memory does not grow with the number of episodes.
