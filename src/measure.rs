@@ -3,7 +3,11 @@
 
 pub mod bootstrap;
 pub mod chi2;
+pub mod divergence;
 pub mod ellipse;
 pub mod frame;
 pub mod fusion;
 pub mod gaussian;
+pub mod leave_one_out;
+mod position;
+pub mod pull;
