@@ -1,10 +1,14 @@
 //! Frame metrics and diagnostics of a fusion: pure functions over plain numbers, used by evaluation, session and
 //! training alike. Knows no network and no file.
 
+pub mod active;
+pub mod attribution;
 pub mod bootstrap;
 pub mod chi2;
 pub mod divergence;
 pub mod ellipse;
+pub mod events;
+pub mod failure;
 pub mod frame;
 pub mod fusion;
 pub mod gaussian;
@@ -14,3 +18,6 @@ mod position;
 pub mod pull;
 pub mod samples;
 pub mod spread;
+
+#[cfg(test)]
+mod any_input;
