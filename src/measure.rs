@@ -2,6 +2,7 @@
 //! training alike. Knows no network and no file.
 
 pub mod bootstrap;
+pub mod corruption;
 pub mod ellipse;
 pub mod frame;
 pub mod fusion;
