@@ -2,7 +2,9 @@
 //! training alike. Knows no network and no file.
 
 pub mod bootstrap;
+pub mod chi2;
 pub mod corruption;
 pub mod ellipse;
 pub mod frame;
 pub mod fusion;
+pub mod gaussian;
