@@ -4,7 +4,10 @@
 pub mod active;
 pub mod attribution;
 pub mod bootstrap;
+pub mod calibration;
 pub mod chi2;
+pub mod correlation;
+pub mod corruption;
 pub mod divergence;
 pub mod ellipse;
 pub mod events;
@@ -18,6 +21,9 @@ mod position;
 pub mod pull;
 pub mod samples;
 pub mod spread;
+pub mod tempering;
 
 #[cfg(test)]
 mod any_input;
+#[cfg(test)]
+mod synthetic;
