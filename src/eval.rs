@@ -49,8 +49,14 @@ pub fn open_loop<M: Borrow<Model>>(
             config.frame_stack + 1
         );
     };
-    let rolled = inspector.rollout(&experts, &beliefs, from, protocol.horizon)?;
-    inspector.decode_pixels(&rolled.mean)
+    let Some(controls) = experts.controls.get(from..from + protocol.horizon) else {
+        candle_core::bail!(
+            "a rollout of {} steps from belief {from} needs controls that were not recorded",
+            protocol.horizon
+        );
+    };
+    let rolled = inspector.rollout(&beliefs, from, controls)?;
+    inspector.decode_pixels(&rolled.gaussians.mean)
 }
 
 /// Mean squared error of each predicted image.

@@ -82,7 +82,7 @@ fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
     } else {
         args.model.clone()
     };
-    let mut models: Vec<Box<dyn Predictor>> = Vec::new();
+    let mut models: Vec<Arc<dyn Predictor>> = Vec::new();
     let mut watched = Vec::new();
     for folder in folders {
         watched.extend(Watched::new(models.len(), &folder));
@@ -143,7 +143,7 @@ mod tests {
 
     fn app() -> App {
         let source = Arc::new(FakeSource::new(3));
-        let session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+        let session = Session::new(source, vec![Arc::new(FakePredictor::three())]);
         App::new(session, Face::default(), Size::new(80, 24))
     }
 

@@ -1,5 +1,9 @@
 //! A checkpoint: a folder with `config.toml`, `weights.safetensors`, `probe.safetensors` and `report.json`.
 
+mod hash;
+
+pub use self::hash::hash;
+
 use std::collections::HashMap;
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
@@ -88,18 +92,27 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
     std::fs::rename(&temporary, path).map_err(file_error)
 }
 
-/// Reads a config, and says which key is wrong.
-pub fn load_config(path: &Path) -> Result<Config, CheckpointError> {
-    let text = std::fs::read_to_string(path).map_err(|cause| CheckpointError::File {
+/// Everything in a file.
+fn read_bytes(path: &Path) -> Result<Vec<u8>, CheckpointError> {
+    std::fs::read(path).map_err(|cause| CheckpointError::File {
         path: path.to_owned(),
         cause,
-    })?;
+    })
+}
+
+/// Reads a config, and says which key is wrong.
+pub fn load_config(path: &Path) -> Result<Config, CheckpointError> {
+    parse_config(path, &read_bytes(path)?)
+}
+
+fn parse_config(path: &Path, bytes: &[u8]) -> Result<Config, CheckpointError> {
     let refuse = |what: String| CheckpointError::Config {
         path: path.to_owned(),
         what,
     };
+    let text = std::str::from_utf8(bytes).map_err(|error| refuse(error.to_string()))?;
     let config: Config =
-        toml::from_str(&text).map_err(|error| refuse(what_is_wrong(&text, &error)))?;
+        toml::from_str(text).map_err(|error| refuse(what_is_wrong(text, &error)))?;
     config
         .validate()
         .map_err(|error: ConfigError| refuse(error.to_string()))?;
@@ -190,11 +203,11 @@ pub fn update_of(folder: &Path) -> Option<u64> {
 
 /// Reads named tensors.
 pub fn read_tensors(path: &Path) -> Result<HashMap<String, Tensor>, CheckpointError> {
-    let bytes = std::fs::read(path).map_err(|cause| CheckpointError::File {
-        path: path.to_owned(),
-        cause,
-    })?;
-    candle_core::safetensors::load_buffer(&bytes, &Device::Cpu).map_err(|error| {
+    parse_tensors(path, &read_bytes(path)?)
+}
+
+fn parse_tensors(path: &Path, bytes: &[u8]) -> Result<HashMap<String, Tensor>, CheckpointError> {
+    candle_core::safetensors::load_buffer(bytes, &Device::Cpu).map_err(|error| {
         CheckpointError::Weights {
             path: path.to_owned(),
             what: format!("not safetensors ({})", first_line(&error)),
@@ -202,13 +215,13 @@ pub fn read_tensors(path: &Path) -> Result<HashMap<String, Tensor>, CheckpointEr
     })
 }
 
-/// Fills the model's networks from `path`.
-pub fn load_weights(model: &Model, path: &Path) -> Result<(), CheckpointError> {
+/// Fills the model's networks from what `path` holds.
+fn fill(model: &Model, path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
     let refuse = |what: String| CheckpointError::Weights {
         path: path.to_owned(),
         what,
     };
-    let tensors = read_tensors(path)?;
+    let tensors = parse_tensors(path, bytes)?;
     for network in model.networks() {
         network
             .fill(|slot| {
@@ -239,19 +252,28 @@ pub fn load_weights(model: &Model, path: &Path) -> Result<(), CheckpointError> {
 
 /// Reads a checkpoint: the model, and its position probe where it has one.
 pub fn load(folder: &Path) -> Result<(Model, Option<Probe>), CheckpointError> {
-    let config = load_config(&folder.join(CONFIG))?;
+    let (model, probe, _) = load_with_hash(folder)?;
+    Ok((model, probe))
+}
+
+/// The same, and the [`hash`] of just what was read: a run may write a newer one meanwhile.
+pub fn load_with_hash(folder: &Path) -> Result<(Model, Option<Probe>, String), CheckpointError> {
+    let path = folder.join(CONFIG);
+    let about = read_bytes(&path)?;
+    let config = parse_config(&path, &about)?;
     let path = folder.join(WEIGHTS);
     let refuse = |what: String| CheckpointError::Weights {
         path: path.clone(),
         what,
     };
     let model = Model::blank(config, &Device::Cpu).map_err(|error| refuse(first_line(&error)))?;
-    load_weights(&model, &path)?;
-    let path = folder.join(PROBE);
-    let probe = if path.exists() {
-        Some(Probe::read(&path, model.config.latent)?)
-    } else {
-        None
+    let weights = read_bytes(&path)?;
+    fill(&model, &path, &weights)?;
+    let found = hash::probe(folder)?;
+    let hash = hash::of_files(&about, &weights, found.as_deref());
+    let probe = match found {
+        Some(_) => Some(Probe::read(&folder.join(PROBE), model.config.latent)?),
+        None => None,
     };
-    Ok((model, probe))
+    Ok((model, probe, hash))
 }

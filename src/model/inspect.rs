@@ -1,5 +1,7 @@
 //! A trained model as plain numbers in and out, on the mean path: what the session and the evaluation ask of it.
 
+mod rollout;
+
 use std::borrow::Borrow;
 
 use candle_core::{Device, Result, Tensor};
@@ -44,25 +46,47 @@ impl<M: Borrow<Model>> Inspector<M> {
 
     /// Each expert's Gaussian at each belief of `observations`.
     pub fn encode(&self, observations: &Observations) -> Result<ExpertTrace> {
+        let mut streams = observations.streams.as_slice();
         let mut experts = Vec::new();
-        let mut streams = observations.streams.iter();
-        for (encoder, weights) in self.model().encoders.iter().zip(&self.weights.encoders) {
-            let seen = streams
-                .by_ref()
-                .take(encoder.streams())
-                .enumerate()
-                .map(|(i, seen)| {
-                    let shape = (observations.beliefs, encoder.inputs(i));
-                    Tensor::from_slice(seen, shape, &Device::Cpu)
-                })
-                .collect::<Result<Vec<_>>>()?;
-            let expert = encoder.encode(&seen, weights, false)?;
-            experts.push(trace(&expert, self.model().config.latent)?);
+        for (index, encoder) in self.model().encoders.iter().enumerate() {
+            let own = streams.split_off(..encoder.streams()).unwrap_or_default();
+            experts.push(self.say(index, own, observations.beliefs)?);
         }
         Ok(ExpertTrace {
             experts,
             controls: observations.controls.clone(),
         })
+    }
+
+    /// The Gaussians of expert `index` alone, from what it alone sees
+    /// ([`observe_expert`](super::observation::observe_expert)): the same bits as in [`Self::encode`].
+    pub fn encode_expert(
+        &self,
+        observations: &Observations,
+        index: usize,
+    ) -> Result<GaussianTrace> {
+        self.say(index, &observations.streams, observations.beliefs)
+    }
+
+    /// What expert `index` says of its streams.
+    fn say(&self, index: usize, streams: &[Vec<f32>], beliefs: usize) -> Result<GaussianTrace> {
+        let networks = self.model().encoders.get(index);
+        let (Some(encoder), Some(weights)) = (networks, self.weights.encoders.get(index)) else {
+            candle_core::bail!("there is no sensor expert {index}");
+        };
+        if streams.len() != encoder.streams() {
+            candle_core::bail!("expert {index} got {} streams", streams.len());
+        }
+        let seen = streams
+            .iter()
+            .enumerate()
+            .map(|(i, seen)| {
+                let shape = (beliefs, encoder.inputs(i));
+                Tensor::from_slice(seen, shape, &Device::Cpu)
+            })
+            .collect::<Result<Vec<_>>>()?;
+        let expert = encoder.encode(&seen, weights, false)?;
+        trace(&expert, self.model().config.latent)
     }
 
     /// The beliefs for one setting of the switches.
@@ -128,39 +152,6 @@ impl<M: Borrow<Model>> Inspector<M> {
                 }
             })
             .collect())
-    }
-
-    /// The prior alone from belief `from`, for `horizon` beliefs.
-    pub fn rollout(
-        &self,
-        experts: &ExpertTrace,
-        beliefs: &BeliefTrace,
-        from: usize,
-        horizon: usize,
-    ) -> Result<GaussianTrace> {
-        let config = &self.model().config;
-        if horizon == 0 {
-            return Ok(GaussianTrace {
-                latent: config.latent,
-                ..GaussianTrace::default()
-            });
-        }
-        let Some(known) = experts.controls.get(from..from + horizon) else {
-            candle_core::bail!(
-                "a rollout of {horizon} steps from belief {from} needs controls that were not recorded"
-            );
-        };
-        let hidden = &beliefs.hidden[from * config.hidden..(from + 1) * config.hidden];
-        let sizes = self.model().dynamics.sizes();
-        let z = beliefs.posterior.row(from).0;
-        let (mean, log_var) = read(&self.weights.dynamics, |w| {
-            recurrence::rollout(sizes, w, hidden, z, known.as_flattened())
-        })?;
-        Ok(GaussianTrace {
-            latent: config.latent,
-            mean,
-            log_var,
-        })
     }
 
     /// What expert `index` would see for each latent, `(n, Z)` row major: `(n, outputs)` numbers.

@@ -168,6 +168,44 @@ pub fn missing(config: &Config, episode: &Episode) -> Vec<String> {
 
 /// What each expert sees of `episode`.
 pub fn observe(config: &Config, episode: &Episode) -> Result<Observations, ObserveError> {
+    seen(config, episode, &config.streams())
+}
+
+/// What expert `index` alone sees of `episode`: the streams of no other are made. As in [`observe`], an episode that
+/// lacks a role of any expert is refused.
+pub fn observe_expert(
+    config: &Config,
+    episode: &Episode,
+    index: usize,
+) -> Result<Observations, ObserveError> {
+    let expert = config.experts.get(index);
+    seen(config, episode, expert.map_or(&[], |e| e.streams()))
+}
+
+fn seen(
+    config: &Config,
+    episode: &Episode,
+    streams: &[Expert],
+) -> Result<Observations, ObserveError> {
+    let beliefs = beliefs(config, episode)?;
+    let stack = config.frame_stack;
+    let streams = streams
+        .iter()
+        .map(|&stream| match stream {
+            Expert::Vision => frames(episode, stack),
+            _ => windows(config, stream, episode, stack),
+        })
+        .collect();
+    let controls = episode.controls.iter().flatten();
+    Ok(Observations {
+        beliefs,
+        streams,
+        controls: controls.skip(stack).copied().collect(),
+    })
+}
+
+/// The beliefs that an episode gives, which has everything in the model's sizes.
+fn beliefs(config: &Config, episode: &Episode) -> Result<usize, ObserveError> {
     let roles = missing(config, episode);
     if !roles.is_empty() {
         return Err(ObserveError::Missing {
@@ -200,26 +238,7 @@ pub fn observe(config: &Config, episode: &Episode) -> Result<Observations, Obser
             format!("{}", episode.steps()),
         ));
     }
-    let streams = config
-        .streams()
-        .into_iter()
-        .map(|stream| match stream {
-            Expert::Vision => frames(episode, stack),
-            _ => windows(config, stream, episode, stack),
-        })
-        .collect();
-    let controls = episode
-        .controls
-        .iter()
-        .flatten()
-        .skip(stack)
-        .copied()
-        .collect();
-    Ok(Observations {
-        beliefs,
-        streams,
-        controls,
-    })
+    Ok(beliefs)
 }
 
 /// `(beliefs, height, width, stack + 1)`: channel 0 the newest frame, in [0, 1].

@@ -52,6 +52,15 @@ pub struct BeliefTrace {
     pub hidden: Vec<f32>,
 }
 
+/// The prior alone, from a belief on: one row a control.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rolled {
+    /// What is believed after each control. The variances are the head's one-step ones, Q of D20: nothing accumulates.
+    pub gaussians: GaussianTrace,
+    /// A of each step, `(h, Z, Z)` row major, its gates as on the mean path (D20).
+    pub transitions: Vec<f32>,
+}
+
 /// α of every expert at every belief, `(beliefs, M)` with the prior last: 0 off, 1 as trained.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Alphas {

@@ -92,6 +92,7 @@ mod tests {
             name: "vhp".to_owned(),
             source: String::new(),
             update: None,
+            hash: String::new(),
             experts: vec![Expert::Vision, Expert::Joint],
             latent: 2,
             frame_stack: 1,

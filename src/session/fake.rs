@@ -5,6 +5,7 @@
 //! latent of four dimensions of which the first two are the square's centre in parts of the frame.
 
 mod dataset;
+mod dynamics;
 mod predictor;
 
 pub use dataset::FakeSource;

@@ -221,6 +221,7 @@ mod tests {
             name: "m".to_owned(),
             source: String::new(),
             update: None,
+            hash: String::new(),
             experts: experts.to_vec(),
             latent: 2,
             frame_stack: 1,

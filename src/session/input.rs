@@ -204,7 +204,7 @@ mod tests {
     fn press(script: &str) -> (Snapshot, Vec<Action>, Input) {
         let mut session = Session::new(
             Arc::new(FakeSource::new(3)),
-            vec![Box::new(FakePredictor::three())],
+            vec![Arc::new(FakePredictor::three())],
         );
         let (mut input, mut others) = (Input::default(), Vec::new());
         for key in parse_script(script).unwrap() {

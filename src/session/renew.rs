@@ -51,7 +51,7 @@ impl Session {
         any
     }
 
-    fn succeed(&mut self, index: usize, predictor: Box<dyn Predictor>) {
+    fn succeed(&mut self, index: usize, predictor: Arc<dyn Predictor>) {
         let Some(info) = self.models.get_mut(index) else {
             return;
         };

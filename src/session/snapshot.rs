@@ -70,6 +70,8 @@ pub struct ModelInfo {
     pub source: String,
     /// The update of its training run that it is of, where that is known.
     pub update: Option<u64>,
+    /// What its answers are kept under: 16 hexadecimal digits of its files, empty for a model that has none.
+    pub hash: String,
     /// Sensor experts in the order of the digits.
     pub experts: Vec<Expert>,
     /// Z.

@@ -17,14 +17,14 @@ use crate::session::snapshot::{Badge, ErrorOf};
 
 const LONG: Duration = Duration::from_secs(20);
 
-fn session_of(models: Vec<Box<dyn Predictor>>) -> Session {
+fn session_of(models: Vec<Arc<dyn Predictor>>) -> Session {
     let mut session = Session::new(Arc::new(FakeSource::new(4)), models);
     assert!(session.wait_idle(LONG));
     session
 }
 
 fn session() -> Session {
-    session_of(vec![Box::new(FakePredictor::three())])
+    session_of(vec![Arc::new(FakePredictor::three())])
 }
 
 /// Applies the commands and waits for what they asked for.
@@ -126,7 +126,7 @@ fn another_episode_keeps_cursor_switches_and_playing() {
 #[test]
 fn commands_wait_for_the_episode_they_are_about() {
     let source = Arc::new(FakeSource::new(2));
-    let mut session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    let mut session = Session::new(source, vec![Arc::new(FakePredictor::three())]);
     let snapshot = run(&mut session, [Last, Step(-2), ToggleExpert(0), CycleScope]);
     assert_eq!(
         (snapshot.cursor, snapshot.scope),
@@ -193,8 +193,8 @@ fn context_and_horizon_move_the_rollout() {
 #[test]
 fn the_state_string_brings_everything_back() {
     let mut first = session_of(vec![
-        Box::new(FakePredictor::joint()),
-        Box::new(FakePredictor::three()),
+        Arc::new(FakePredictor::joint()),
+        Arc::new(FakePredictor::three()),
     ]);
     let script = [
         SelectModel(1),
@@ -216,8 +216,8 @@ fn the_state_string_brings_everything_back() {
     );
 
     let mut second = session_of(vec![
-        Box::new(FakePredictor::joint()),
-        Box::new(FakePredictor::three()),
+        Arc::new(FakePredictor::joint()),
+        Arc::new(FakePredictor::three()),
     ]);
     let back = run(&mut second, [Restore(format!("{};lens=3", there.state))]);
     assert_eq!(text(&back), "kept without a meaning here: lens");
@@ -280,7 +280,7 @@ fn a_session_without_models_still_shows_the_recording() {
 #[test]
 fn an_episode_can_be_too_short_to_predict_anything() {
     let source = Arc::new(FakeSource::with_steps(1, 2));
-    let mut session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    let mut session = Session::new(source, vec![Arc::new(FakePredictor::three())]);
     let snapshot = run(&mut session, [Last]);
     assert_eq!((snapshot.start, snapshot.horizon), (1, 0));
     assert!(snapshot.frames.belief.is_some() && snapshot.frames.prediction.is_none());

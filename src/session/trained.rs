@@ -7,9 +7,20 @@ use super::snapshot::{Estimate, ModelInfo};
 use crate::episode::{Episode, Frame, Layout};
 use crate::model::Model;
 use crate::model::inspect::Inspector;
-use crate::model::observation::{self, observe};
+use crate::model::observation::{self, observe, observe_expert};
 use crate::model::probe::Probe;
-use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
+use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace, Rolled};
+
+/// Where a model came from.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// For the status line.
+    pub source: String,
+    /// The update of its training run that it is of, where that is known.
+    pub update: Option<u64>,
+    /// [`hash`](crate::model::checkpoint::hash) of its files; empty for one that has none.
+    pub hash: String,
+}
 
 /// A model with its weights folded, and its position probe.
 #[derive(Debug)]
@@ -24,19 +35,14 @@ fn refused(error: impl Display) -> PredictError {
 }
 
 impl Trained {
-    /// Takes over `model`; `source` says in the status line where it came from, `update` of which update of its
-    /// training it is.
-    pub fn new(
-        model: Model,
-        probe: Option<Probe>,
-        source: String,
-        update: Option<u64>,
-    ) -> Result<Self, PredictError> {
+    /// Takes over `model`.
+    pub fn new(model: Model, probe: Option<Probe>, origin: Origin) -> Result<Self, PredictError> {
         let config = &model.config;
         let info = ModelInfo {
             name: config.name.clone(),
-            source,
-            update,
+            source: origin.source,
+            update: origin.update,
+            hash: origin.hash,
             experts: config.experts.clone(),
             latent: config.latent,
             frame_stack: config.frame_stack,
@@ -72,20 +78,51 @@ impl Predictor for Trained {
         self.inspector.encode(&seen).map_err(refused)
     }
 
+    fn encode_expert(
+        &self,
+        episode: &Episode,
+        expert: usize,
+    ) -> Result<GaussianTrace, PredictError> {
+        let config = &self.inspector.model().config;
+        let seen = observe_expert(config, episode, expert).map_err(refused)?;
+        self.inspector.encode_expert(&seen, expert).map_err(refused)
+    }
+
     fn filter(&self, trace: &ExpertTrace, alphas: &Alphas) -> Result<BeliefTrace, PredictError> {
         self.inspector.filter(trace, alphas).map_err(refused)
     }
 
-    fn rollout(
+    fn filter_all(
         &self,
         trace: &ExpertTrace,
+        settings: &[Alphas],
+    ) -> Result<Vec<BeliefTrace>, PredictError> {
+        self.inspector.filter_all(trace, settings).map_err(refused)
+    }
+
+    fn transitions(&self, beliefs: &BeliefTrace) -> Result<Vec<f32>, PredictError> {
+        self.inspector.transitions(beliefs).map_err(refused)
+    }
+
+    fn rollout(
+        &self,
         beliefs: &BeliefTrace,
         from: usize,
-        horizon: usize,
-    ) -> Result<GaussianTrace, PredictError> {
-        self.inspector
-            .rollout(trace, beliefs, from, horizon)
-            .map_err(refused)
+        controls: &[[f32; 2]],
+    ) -> Result<Rolled, PredictError> {
+        let rolled = self.inspector.rollout(beliefs, from, controls);
+        rolled.map_err(refused)
+    }
+
+    fn sample(
+        &self,
+        beliefs: &BeliefTrace,
+        from: usize,
+        controls: &[[f32; 2]],
+        noise: &[f32],
+    ) -> Result<Vec<f32>, PredictError> {
+        let sampled = self.inspector.sample(beliefs, from, controls, noise);
+        sampled.map_err(refused)
     }
 
     fn decode(&self, latents: &[f32]) -> Result<Vec<Frame>, PredictError> {
@@ -104,5 +141,13 @@ impl Predictor for Trained {
 
     fn position_weights(&self) -> Option<&[f32]> {
         self.probe.as_ref().map(|probe| probe.weights.as_slice())
+    }
+
+    fn position_bias(&self) -> Option<[f32; 2]> {
+        self.probe.as_ref().map(|probe| probe.bias)
+    }
+
+    fn position_residual(&self) -> Option<[f32; 3]> {
+        self.probe.as_ref().map(|probe| probe.residual)
     }
 }

@@ -91,7 +91,7 @@ impl Answer {
 pub type Waker = Box<dyn Fn() + Send>;
 
 /// A newer model, or why it cannot be had.
-pub type Found = Result<Box<dyn Predictor>, String>;
+pub type Found = Result<Arc<dyn Predictor>, String>;
 
 /// What both threads hold.
 #[derive(Default)]
@@ -103,7 +103,7 @@ pub struct Shared {
     /// Wakes the face.
     pub waker: Mutex<Option<Waker>>,
     /// To the worker, before its next request: models that take the place of others.
-    pub successors: Mutex<BTreeMap<usize, Box<dyn Predictor>>>,
+    pub successors: Mutex<BTreeMap<usize, Arc<dyn Predictor>>>,
     /// To the session, from whoever watches its models.
     pub renewed: Mutex<BTreeMap<usize, Found>>,
 }
@@ -122,7 +122,7 @@ impl Shared {
 pub fn spawn(
     shared: Arc<Shared>,
     source: Arc<dyn EpisodeSource>,
-    predictors: Vec<Box<dyn Predictor>>,
+    predictors: Vec<Arc<dyn Predictor>>,
 ) -> std::io::Result<JoinHandle<()>> {
     std::thread::Builder::new()
         .name(THREAD.to_owned())
@@ -162,7 +162,7 @@ impl From<PredictError> for Stop {
 
 struct Worker {
     source: Arc<dyn EpisodeSource>,
-    predictors: Vec<Box<dyn Predictor>>,
+    predictors: Vec<Arc<dyn Predictor>>,
     memo: Memo,
     /// What was last published.
     shown: Cell<Option<Target>>,

@@ -159,6 +159,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
             name: "v-h-p".to_owned(),
             source: "sample_data/model".to_owned(),
             update: None,
+            hash: String::new(),
             experts: EXPERTS[..3].iter().map(|&(expert, _)| expert).collect(),
             latent: DIMS,
             frame_stack: 1,

@@ -52,7 +52,7 @@ fn described(buf: &Buffer) -> String {
 
 fn app(size: (u16, u16)) -> App {
     let source = Arc::new(FakeSource::new(3));
-    let session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    let session = Session::new(source, vec![Arc::new(FakePredictor::three())]);
     App::new(session, Face::default(), Size::new(size.0, size.1))
 }
 

@@ -6,10 +6,11 @@ use std::collections::BTreeMap;
 use candle_core::{DType, Device};
 use poescope::data::align;
 use poescope::episode::Episode;
+use poescope::modality::Modality;
 use poescope::model::config::{Config, Preset};
 use poescope::model::inspect::Inspector;
 use poescope::model::kernel::adam;
-use poescope::model::observation::observe;
+use poescope::model::observation::{observe, observe_expert};
 use poescope::model::trace::Alphas;
 use poescope::model::{Model, checkpoint};
 use poescope::sim::{Params, simulate};
@@ -112,12 +113,43 @@ fn every_model_looks_at_an_episode_and_comes_back_from_disk() {
                 assert_eq!(experts.experts.len(), config.experts.len());
                 let on = Alphas::trained(seen.beliefs, config.switches());
                 let beliefs = inspector.filter(&experts, &on).unwrap();
-                let rolled = inspector.rollout(&experts, &beliefs, 1, 3).unwrap();
-                inspector.decode_pixels(&rolled.mean).unwrap()
+                let known = &experts.controls[1..4];
+                let rolled = inspector.rollout(&beliefs, 1, known).unwrap();
+                inspector.decode_pixels(&rolled.gaussians.mean).unwrap()
             };
             let pixels = look(&model);
             assert_eq!(pixels.len(), 3 * 64 * 64);
             assert_eq!(pixels, look(&read), "{name}");
+        }
+    }
+}
+
+#[test]
+fn an_expert_says_the_same_alone_and_a_damaged_input_changes_its_own_word_only() {
+    for name in Config::NAMES {
+        let mut config = small(name, Preset::Fast);
+        let (model, _) = first_batch(&mut config);
+        let inspector = Inspector::new(&model).unwrap();
+        let episode = &episodes(&config)[0];
+        let all = inspector.encode(&observe(&config, episode).unwrap());
+        let all = all.unwrap().experts;
+        let alone = |episode: &Episode, index: usize| {
+            let seen = observe_expert(&config, episode, index).unwrap();
+            inspector.encode_expert(&seen, index).unwrap()
+        };
+        let mut damaged = episode.clone();
+        damaged.haptic.as_mut().unwrap().fill(0.0);
+        for (index, expert) in config.experts.iter().enumerate() {
+            assert_eq!(alone(episode, index), all[index], "{name} {index}");
+            let touched = expert.modalities().contains(&Modality::Haptic);
+            let changed = alone(&damaged, index) != all[index];
+            assert_eq!(changed, touched, "{name} {index}");
+        }
+        let none = observe_expert(&config, episode, all.len()).unwrap();
+        assert!(inspector.encode_expert(&none, all.len()).is_err());
+        let everything = observe(&config, episode).unwrap();
+        if everything.streams.len() > 2 {
+            assert!(inspector.encode_expert(&everything, 0).is_err());
         }
     }
 }

@@ -80,14 +80,15 @@ fn forward_pass() {
     let trace = inspector
         .filter(&experts, &Alphas::trained(beliefs, 3))
         .unwrap();
-    let rolled = inspector.rollout(&experts, &trace, 0, 2).unwrap();
+    let rolled = inspector.rollout(&trace, 0, &experts.controls).unwrap();
     let mut all = [
         trace.posterior.mean.clone(),
         trace.posterior.log_var,
         trace.hidden,
     ]
     .concat();
-    all.extend(rolled.mean.iter().chain(&rolled.log_var));
+    all.extend(rolled.gaussians.mean.iter());
+    all.extend(rolled.gaussians.log_var.iter().chain(&rolled.transitions));
     all.extend(inspector.decode(0, &trace.posterior.mean).unwrap());
     all.extend(inspector.decode(1, &trace.posterior.mean).unwrap());
     let bytes: Vec<u8> = all.iter().flat_map(|number| number.to_le_bytes()).collect();

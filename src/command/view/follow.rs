@@ -2,6 +2,7 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, SystemTime};
@@ -10,7 +11,7 @@ use crate::model::checkpoint::{self, CONFIG, PROBE, WEIGHTS};
 use crate::session::Found;
 use crate::session::predict::Predictor;
 use crate::session::renew::Renewal;
-use crate::session::trained::Trained;
+use crate::session::trained::{Origin, Trained};
 
 /// Time between two looks at the files.
 pub const PERIOD: Duration = Duration::from_secs(2);
@@ -58,11 +59,15 @@ fn stamp(folder: &Path) -> Stamp {
 }
 
 /// The model of a checkpoint folder, for a session.
-pub fn open(folder: &Path) -> anyhow::Result<Box<dyn Predictor>> {
+pub fn open(folder: &Path) -> anyhow::Result<Arc<dyn Predictor>> {
     let update = checkpoint::update_of(folder);
-    let (model, probe) = checkpoint::load(folder)?;
-    let source = folder.display().to_string();
-    Ok(Box::new(Trained::new(model, probe, source, update)?))
+    let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
+    let origin = Origin {
+        source: folder.display().to_string(),
+        update,
+        hash,
+    };
+    Ok(Arc::new(Trained::new(model, probe, origin)?))
 }
 
 /// Watches until it is dropped.
@@ -103,8 +108,6 @@ fn follow(watched: &mut [Watched], period: Duration, renewal: &Renewal, ended: &
 #[cfg(test)]
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
-
-    use std::sync::Arc;
 
     use candle_core::{DType, Device};
 

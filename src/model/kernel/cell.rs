@@ -5,6 +5,7 @@
 
 pub(super) mod backward;
 pub(super) mod forward;
+pub(super) mod mixed;
 
 use std::sync::{Mutex, PoisonError};
 

@@ -4,6 +4,7 @@
 //! With experts `(μᵢ, σᵢ²)` and factors αᵢ: precision `τ = Σ αᵢ / σᵢ²`, mean `Σ αᵢ μᵢ / σᵢ² / τ`, log-variance
 //! `log(1 / τ + 10⁻⁸)`. Sequences are independent, and have the same bits alone and in a batch.
 
+pub mod alone;
 mod backward;
 mod forward;
 
@@ -14,8 +15,8 @@ use candle_core::{CpuStorage, CustomOp2, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
 use self::forward::Run;
-use super::cell::Sizes;
 use super::cell::backward::{Transposes, weights};
+use super::cell::{Sizes, mixed};
 use super::chain::{cpu, part_size};
 use super::values;
 
@@ -164,26 +165,12 @@ pub fn run(sizes: Sizes, weights: &[f32], inputs: &Inputs) -> Result<Vec<f32>> {
     Ok(run_parts(sizes, weights, inputs, false).0)
 }
 
-/// The cell alone: from states `hidden (B, hidden)` and latents `z (B, Z)`, a step for each row of
-/// `controls (B, T, U)`, means going in. Means and log-variances, `(B, T, Z)`.
-pub fn rollout(
-    sizes: Sizes,
-    weights: &[f32],
-    hidden: &[f32],
-    z: &[f32],
-    controls: &[f32],
-) -> Result<(Vec<f32>, Vec<f32>)> {
-    let batch = z.len() / sizes.latent;
-    if weights.len() != sizes.parameters() || hidden.len() != batch * sizes.hidden {
-        bail!("a rollout of {sizes:?} got a state or weights of another size");
+/// A of the steps that led to `states (n, hidden)`, their gates frozen: `(n, Z, Z)` row major.
+pub fn transitions(sizes: Sizes, weights: &[f32], states: &[f32]) -> Result<Vec<f32>> {
+    if weights.len() != sizes.parameters() || !states.len().is_multiple_of(sizes.hidden) {
+        bail!("transitions of {sizes:?} got states or weights of another size");
     }
-    Ok(forward::rollout(
-        sizes,
-        &sizes.weights(weights),
-        hidden,
-        z,
-        controls,
-    ))
+    Ok(mixed::matrices_of(sizes, &sizes.weights(weights), states))
 }
 
 fn run_parts(sizes: Sizes, weights: &[f32], inputs: &Inputs, keep: bool) -> (Vec<f32>, Vec<Run>) {

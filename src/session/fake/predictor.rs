@@ -4,17 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::dataset::{TABLE_M, centre_of, square_at};
+use super::dynamics::{self, LATENT, STEP_VARIANCE};
 use crate::episode::{Episode, Frame, Layout};
 use crate::modality::{Expert, ExpertSet};
-use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
+use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace, Rolled};
 use crate::session::predict::{PredictError, Predictor};
 use crate::session::snapshot::{Estimate, ModelInfo};
 
-const LATENT: usize = 4;
-/// Variance before anything was seen, and the largest there is: a prior tempered to nearly nothing stays finite.
+/// Variance before anything was seen.
 const FIRST_VARIANCE: f32 = 20.0;
-/// Variance that one step of the dynamics adds.
-const STEP_VARIANCE: f32 = 0.004;
 /// W of the position probe: metres along x and y of the first two dimensions.
 const WEIGHTS: [f32; 2 * LATENT] = [TABLE_M, 0.0, 0.0, 0.0, 0.0, TABLE_M, 0.0, 0.0];
 
@@ -22,6 +20,7 @@ const WEIGHTS: [f32; 2 * LATENT] = [TABLE_M, 0.0, 0.0, 0.0, 0.0, TABLE_M, 0.0, 0
 #[derive(Debug, Default)]
 pub struct Calls {
     encode: AtomicUsize,
+    encode_one: AtomicUsize,
     filter: AtomicUsize,
 }
 
@@ -29,6 +28,11 @@ impl Calls {
     /// Episodes encoded.
     pub fn encoded(&self) -> usize {
         self.encode.load(Ordering::Relaxed)
+    }
+
+    /// Experts encoded again on their own.
+    pub fn encoded_one(&self) -> usize {
+        self.encode_one.load(Ordering::Relaxed)
     }
 
     /// Settings of the switches filtered.
@@ -81,6 +85,7 @@ impl FakePredictor {
             name: name.to_owned(),
             source: "made up".to_owned(),
             update: None,
+            hash: String::new(),
             experts: experts.to_vec(),
             latent: LATENT,
             frame_stack: 1,
@@ -103,6 +108,14 @@ impl FakePredictor {
     /// Its counters.
     pub fn calls(&self) -> Arc<Calls> {
         Arc::clone(&self.calls)
+    }
+
+    fn expert_says(&self, index: usize, episode: &Episode) -> Result<GaussianTrace, PredictError> {
+        let Some(&expert) = self.info.experts.get(index) else {
+            return Err(PredictError(format!("there is no sensor expert {index}")));
+        };
+        let missing = || PredictError(format!("no {}", expert.name()));
+        self.says(expert, episode).ok_or_else(missing)
     }
 
     fn says(&self, expert: Expert, episode: &Episode) -> Option<GaussianTrace> {
@@ -156,15 +169,9 @@ impl Predictor for FakePredictor {
 
     fn encode(&self, episode: &Episode) -> Result<ExpertTrace, PredictError> {
         self.calls.encode.fetch_add(1, Ordering::Relaxed);
-        let says = |&expert: &Expert| {
-            let missing = || PredictError(format!("no {}", expert.name()));
-            self.says(expert, episode).ok_or_else(missing)
-        };
-        let experts = self
-            .info
-            .experts
-            .iter()
-            .map(says)
+        let experts = 0..self.info.experts.len();
+        let experts = experts
+            .map(|expert| self.expert_says(expert, episode))
             .collect::<Result<_, _>>()?;
         let controls = episode
             .controls
@@ -175,6 +182,15 @@ impl Predictor for FakePredictor {
             experts,
             controls: controls.copied().collect(),
         })
+    }
+
+    fn encode_expert(
+        &self,
+        episode: &Episode,
+        expert: usize,
+    ) -> Result<GaussianTrace, PredictError> {
+        self.calls.encode_one.fetch_add(1, Ordering::Relaxed);
+        self.expert_says(expert, episode)
     }
 
     fn filter(&self, trace: &ExpertTrace, alphas: &Alphas) -> Result<BeliefTrace, PredictError> {
@@ -207,7 +223,8 @@ impl Predictor for FakePredictor {
             }
             posterior.mean.extend(mean);
             posterior.log_var.extend(variance.map(f32::ln));
-            advance(&mut mean, &mut variance, trace.controls.get(i));
+            dynamics::push(&mut mean, trace.controls.get(i));
+            variance = [STEP_VARIANCE; LATENT];
         }
         Ok(BeliefTrace {
             prior,
@@ -216,28 +233,35 @@ impl Predictor for FakePredictor {
         })
     }
 
+    fn transitions(&self, beliefs: &BeliefTrace) -> Result<Vec<f32>, PredictError> {
+        Ok(dynamics::identities(beliefs.posterior.len()))
+    }
+
     fn rollout(
         &self,
-        trace: &ExpertTrace,
         beliefs: &BeliefTrace,
         from: usize,
-        horizon: usize,
-    ) -> Result<GaussianTrace, PredictError> {
-        let (means, log_vars) = beliefs.posterior.row(from);
-        let (mut mean, mut variance) = ([0.0; LATENT], [0.0; LATENT]);
-        mean.copy_from_slice(means);
-        variance.copy_from_slice(log_vars);
-        variance = variance.map(f32::exp);
-        let mut rollout = GaussianTrace {
-            latent: LATENT,
-            ..GaussianTrace::default()
-        };
-        for i in from..from + horizon {
-            advance(&mut mean, &mut variance, trace.controls.get(i));
-            rollout.mean.extend(mean);
-            rollout.log_var.extend(variance.map(f32::ln));
+        controls: &[[f32; 2]],
+    ) -> Result<Rolled, PredictError> {
+        Ok(dynamics::rollout(row(beliefs, from)?.0, controls))
+    }
+
+    fn sample(
+        &self,
+        beliefs: &BeliefTrace,
+        from: usize,
+        controls: &[[f32; 2]],
+        noise: &[f32],
+    ) -> Result<Vec<f32>, PredictError> {
+        let each = (controls.len() + 1) * LATENT;
+        if !noise.len().is_multiple_of(each) {
+            let (len, steps) = (noise.len(), controls.len());
+            return Err(PredictError(format!(
+                "{len} numbers of noise are not of whole samples over {steps} steps"
+            )));
         }
-        Ok(rollout)
+        let (mean, log_var) = row(beliefs, from)?;
+        Ok(dynamics::samples(mean, log_var, controls, noise))
     }
 
     fn decode(&self, latents: &[f32]) -> Result<Vec<Frame>, PredictError> {
@@ -262,14 +286,23 @@ impl Predictor for FakePredictor {
     fn position_weights(&self) -> Option<&[f32]> {
         Some(&WEIGHTS)
     }
+
+    fn position_bias(&self) -> Option<[f32; 2]> {
+        Some([0.0; 2])
+    }
+
+    fn position_residual(&self) -> Option<[f32; 3]> {
+        Some([0.0; 3])
+    }
 }
 
-/// One step of the dynamics: the square goes where the control says, a little less surely.
-fn advance(mean: &mut [f32; LATENT], variance: &mut [f32; LATENT], control: Option<&[f32; 2]>) {
-    let [x, y] = control.copied().unwrap_or_default();
-    mean[0] += x;
-    mean[1] += y;
-    for v in variance {
-        *v = (*v + STEP_VARIANCE).min(FIRST_VARIANCE);
+/// Mean and log-variances of a belief.
+fn row(beliefs: &BeliefTrace, from: usize) -> Result<(&[f32], &[f32]), PredictError> {
+    let count = beliefs.posterior.len();
+    if from >= count {
+        return Err(PredictError(format!(
+            "there is no belief {from} of {count}"
+        )));
     }
+    Ok(beliefs.posterior.row(from))
 }

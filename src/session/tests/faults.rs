@@ -5,7 +5,7 @@ use std::sync::{Condvar, Mutex};
 
 use super::*;
 use crate::episode::{Episode, EpisodeMeta, Frame, Layout, SourceError};
-use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
+use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace, Rolled};
 use crate::session::predict::PredictError;
 use crate::session::snapshot::Estimate;
 
@@ -59,14 +59,28 @@ impl Predictor for Awkward {
         assert!(alphas.row(0)[1] > 0.0, "haptic is off");
         self.inner.filter(trace, alphas)
     }
+    fn encode_expert(&self, e: &Episode, expert: usize) -> Result<GaussianTrace, PredictError> {
+        self.inner.encode_expert(e, expert)
+    }
+    fn transitions(&self, b: &BeliefTrace) -> Result<Vec<f32>, PredictError> {
+        self.inner.transitions(b)
+    }
     fn rollout(
         &self,
-        t: &ExpertTrace,
         b: &BeliefTrace,
         from: usize,
-        h: usize,
-    ) -> Result<GaussianTrace, PredictError> {
-        self.inner.rollout(t, b, from, h)
+        controls: &[[f32; 2]],
+    ) -> Result<Rolled, PredictError> {
+        self.inner.rollout(b, from, controls)
+    }
+    fn sample(
+        &self,
+        b: &BeliefTrace,
+        from: usize,
+        controls: &[[f32; 2]],
+        noise: &[f32],
+    ) -> Result<Vec<f32>, PredictError> {
+        self.inner.sample(b, from, controls, noise)
     }
     fn decode(&self, latents: &[f32]) -> Result<Vec<Frame>, PredictError> {
         self.decoded.lock().unwrap().push(latents.len() / 4);
@@ -76,6 +90,12 @@ impl Predictor for Awkward {
         None
     }
     fn position_weights(&self) -> Option<&[f32]> {
+        None
+    }
+    fn position_bias(&self) -> Option<[f32; 2]> {
+        None
+    }
+    fn position_residual(&self) -> Option<[f32; 3]> {
         None
     }
 }
@@ -94,7 +114,7 @@ fn logged(missing: &[&str]) -> (Session, Arc<Door>, Arc<Mutex<Vec<usize>>>) {
         missing: missing.iter().map(|&role| role.to_owned()).collect(),
         decoded: Arc::clone(&decoded),
     };
-    (session_of(vec![Box::new(model)]), door, decoded)
+    (session_of(vec![Arc::new(model)]), door, decoded)
 }
 
 #[test]
@@ -228,7 +248,7 @@ impl EpisodeSource for Torn {
 fn an_episode_that_cannot_be_read_is_told_and_left_again() {
     let mut session = Session::new(
         Arc::new(Torn(FakeSource::new(3))),
-        vec![Box::new(FakePredictor::three())],
+        vec![Arc::new(FakePredictor::three())],
     );
     let torn = run(&mut session, [Last, Episode(1), Step(-1)]);
     assert!(torn.episode.is_none());

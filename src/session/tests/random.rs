@@ -77,11 +77,11 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     Ok(())
 }
 
-fn models() -> Vec<Box<dyn Predictor>> {
+fn models() -> Vec<Arc<dyn Predictor>> {
     vec![
-        Box::new(FakePredictor::three()),
-        Box::new(FakePredictor::joint()),
-        Box::new(FakePredictor::vision()),
+        Arc::new(FakePredictor::three()),
+        Arc::new(FakePredictor::joint()),
+        Arc::new(FakePredictor::vision()),
     ]
 }
 

@@ -15,7 +15,7 @@ fn a_newer_model_takes_over_and_everything_else_stays() {
     );
     let newer = FakePredictor::three().at_update(1200);
     let calls = newer.calls();
-    session.renewal().offer(0, Ok(Box::new(newer)));
+    session.renewal().offer(0, Ok(Arc::new(newer)));
     // Nothing happens by itself: the face is woken, and looks.
     assert_eq!(shown_update(&session.snapshot()), None);
     assert!(session.update(Duration::ZERO));
@@ -39,16 +39,16 @@ fn a_newer_model_takes_over_and_everything_else_stays() {
 
 #[test]
 fn a_model_that_is_not_shown_is_newer_when_it_is() {
-    let models: [Box<dyn Predictor>; 2] = [
-        Box::new(FakePredictor::three()),
-        Box::new(FakePredictor::joint()),
+    let models: [Arc<dyn Predictor>; 2] = [
+        Arc::new(FakePredictor::three()),
+        Arc::new(FakePredictor::joint()),
     ];
     let mut session = session_of(models.into());
     run(&mut session, [SelectModel(1), SelectModel(0)]);
     let [first, second] = [7, 8].map(|update| FakePredictor::joint().at_update(update));
     let calls = [first.calls(), second.calls()];
     for newer in [first, second] {
-        session.renewal().offer(1, Ok(Box::new(newer)));
+        session.renewal().offer(1, Ok(Arc::new(newer)));
     }
     session.update(Duration::ZERO);
     assert_eq!(shown_update(&run(&mut session, [])), None);

@@ -7,7 +7,7 @@ use crate::session::snapshot::LatentView;
 fn counted() -> (Session, Arc<Calls>) {
     let model = FakePredictor::three();
     let calls = model.calls();
-    (session_of(vec![Box::new(model)]), calls)
+    (session_of(vec![Arc::new(model)]), calls)
 }
 
 fn belief(snapshot: &Snapshot) -> LatentView {
@@ -156,11 +156,11 @@ fn solo_leaves_the_prior_and_undo_brings_the_others_back() {
 
 #[test]
 fn switches_follow_their_expert_to_another_model() {
-    let models = || -> Vec<Box<dyn Predictor>> {
+    let models = || -> Vec<Arc<dyn Predictor>> {
         vec![
-            Box::new(FakePredictor::three()),
-            Box::new(FakePredictor::joint()),
-            Box::new(FakePredictor::vision()),
+            Arc::new(FakePredictor::three()),
+            Arc::new(FakePredictor::joint()),
+            Arc::new(FakePredictor::vision()),
         ]
     };
     let mut session = session_of(models());

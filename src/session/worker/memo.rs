@@ -196,9 +196,16 @@ impl Memo {
         };
         let from = rollout.start.saturating_sub(predictor.info().frame_stack);
         let roll = || {
-            predictor
-                .rollout(&inferred.trace, &inferred.beliefs, from, rollout.horizon)
-                .map(|trace| Pictured::new(predictor, trace, rollout.start + 1, steps))
+            let controls = inferred.trace.controls.get(from..from + rollout.horizon);
+            let controls = controls.ok_or_else(|| {
+                PredictError(format!(
+                    "a rollout of {} steps from belief {from} needs controls that were not recorded",
+                    rollout.horizon
+                ))
+            })?;
+            let rolled = predictor.rollout(&inferred.beliefs, from, controls)?;
+            let (first, gaussians) = (rollout.start + 1, rolled.gaussians);
+            Ok::<_, PredictError>(Pictured::new(predictor, gaussians, first, steps))
         };
         self.rollouts
             .get_or_try_insert((key.clone(), rollout), roll)?;

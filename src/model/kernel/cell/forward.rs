@@ -112,7 +112,7 @@ fn through_gates(hidden: usize, h: &[f32], tape: &mut TapeRows, state: &mut [f32
 }
 
 /// exp(xᵢ) / Σ exp(xⱼ), in place.
-fn softmax(logits: &mut [f32]) {
+pub(super) fn softmax(logits: &mut [f32]) {
     let top = logits.iter().copied().fold(f32::NEG_INFINITY, f32::max);
     let mut sum = 0.0;
     for logit in &mut *logits {

@@ -195,49 +195,9 @@ impl Run {
 }
 
 /// The log-variance that a cell's head stated.
-fn stated(sizes: Sizes, head: &[f32], log_var: &mut [f32]) {
+pub(super) fn stated(sizes: Sizes, head: &[f32], log_var: &mut [f32]) {
     let heads = head.chunks_exact(sizes.mixtures + sizes.latent);
     for (log_var, head) in log_var.chunks_exact_mut(sizes.latent).zip(heads) {
         log_var.copy_from_slice(&head[sizes.mixtures..]);
     }
-}
-
-/// The cell alone, means going in: means and log-variances, `(B, T, Z)`.
-pub fn rollout(
-    sizes: Sizes,
-    w: &Weights,
-    hidden: &[f32],
-    z: &[f32],
-    controls: &[f32],
-) -> (Vec<f32>, Vec<f32>) {
-    let (latent, control) = (sizes.latent, sizes.inputs - sizes.latent);
-    let batch = z.len() / latent;
-    let steps = controls.len() / (batch * control);
-    let (mut hidden, mut z) = (hidden.to_vec(), z.to_vec());
-    let (mut state, mut log_var) = (hidden.clone(), z.clone());
-    let mut x = vec![0.0; batch * sizes.inputs];
-    let mut tape = Tape::new(sizes, batch);
-    let mut out = (
-        vec![0.0; batch * steps * latent],
-        vec![0.0; batch * steps * latent],
-    );
-    for t in 0..steps {
-        let controls = controls.chunks_exact(control).skip(t).step_by(steps);
-        let fed = z.chunks_exact(latent).zip(controls);
-        for (x, (z, u)) in x.chunks_exact_mut(sizes.inputs).zip(fed) {
-            x[..latent].copy_from_slice(z);
-            x[latent..].copy_from_slice(u);
-        }
-        let mut rows = tape.rows(sizes, 0..batch);
-        step(sizes, w, &hidden, &x, &mut rows, &mut state, &mut z);
-        stated(sizes, rows.head, &mut log_var);
-        std::mem::swap(&mut hidden, &mut state);
-        for (out, from) in [(&mut out.0, &z), (&mut out.1, &log_var)] {
-            let rows = out.chunks_exact_mut(latent).skip(t).step_by(steps);
-            for (row, from) in rows.zip(from.chunks_exact(latent)) {
-                row.copy_from_slice(from);
-            }
-        }
-    }
-    out
 }
