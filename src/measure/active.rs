@@ -1,12 +1,12 @@
 //! Which latents a model uses at all (D19): a dimension whose mean hardly moves over the data says nothing.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The variance of `μ*_d` over data above which a dimension counts as active (Burda et al. 2016).
 pub const THRESHOLD: f32 = 0.01;
 
 /// Mean and variance of the posterior mean `μ*` over data, gathered one belief at a time.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LatentStats {
     /// Beliefs seen.
     pub count: usize,

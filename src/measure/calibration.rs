@@ -59,6 +59,11 @@ impl Calibration {
     }
 }
 
+/// `½ (ε + ln det 2πP)` in nats, positions in metres (D13); none where [`nees`] has none.
+pub fn nll(error: &Error2) -> Option<f64> {
+    nees(error).map(|nees| scores::nll(error, nees))
+}
+
 /// Calibration, sharpness and scores of `errors` (D12, D13), at most one an episode. None where none can be counted.
 pub fn calibration(errors: &[Error2]) -> Option<Calibration> {
     let counted: Vec<(Error2, f64)> = errors

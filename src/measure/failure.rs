@@ -49,6 +49,30 @@ impl Order {
         Self::ALL.into_iter().find(|order| order.name() == name)
     }
 
+    /// What it ranks by, in words.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Self::Error => "squared error of the frame",
+            Self::Distance => "distance of the position from the truth",
+            Self::Nees => "NEES of the position",
+            Self::Conflict => "conflict energy",
+            Self::Gain => "gain over vision alone, the smallest first",
+            Self::Escape => "first step outside the 95 % ellipse",
+        }
+    }
+
+    /// A value of it with its unit.
+    pub fn spelt(self, value: f32) -> String {
+        match self {
+            Self::Error => format!("squared error {value:.1}"),
+            Self::Distance => format!("{:.1} cm off", 100.0 * value),
+            Self::Nees => format!("NEES {value:.1}"),
+            Self::Conflict => format!("Q {value:.0}"),
+            Self::Gain => format!("gain {value:+.1}"),
+            Self::Escape => format!("outside from step {value:.0} on"),
+        }
+    }
+
     /// The one after it, round and round.
     #[must_use]
     pub fn next(self) -> Self {
@@ -57,7 +81,7 @@ impl Order {
 }
 
 /// What is known of an episode, or of one step of it; none where it cannot be had (no truth, no `v` model).
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scores {
     /// Squared error of the predicted frame, summed over pixels in grey 0 to 1.
     pub error: Option<f32>,
@@ -74,6 +98,18 @@ pub struct Scores {
 }
 
 impl Scores {
+    /// What an order ranks by; steps count from 1.
+    pub fn value(&self, order: Order) -> Option<f32> {
+        match order {
+            Order::Error => self.error,
+            Order::Distance => self.distance_m,
+            Order::Nees => self.nees,
+            Order::Conflict => self.conflict,
+            Order::Gain => self.gain,
+            Order::Escape => self.escape.map(|step| (step + 1) as f32),
+        }
+    }
+
     /// Larger is worse; none where it is not known or not a number.
     fn badness(&self, order: Order) -> Option<f64> {
         let known = |score: Option<f32>| score.map(f64::from);
@@ -110,7 +146,7 @@ pub fn queue(per_episode: &[(usize, Vec<Scores>)], order: Order) -> Vec<(usize, 
         .iter()
         .filter_map(|(episode, steps)| {
             let step = *rank(steps, order).first()?;
-            let scores = steps[step].clone();
+            let scores = steps[step];
             scores.badness(order)?;
             Some(((*episode, step), scores))
         })
