@@ -15,37 +15,49 @@ pub mod fusing;
 pub mod input;
 pub mod keymap;
 pub mod keys;
+pub mod known;
 pub mod playback;
 pub mod predict;
 pub mod renew;
 pub mod settings;
 pub mod snapshot;
 pub mod state;
+pub mod survey;
 pub mod switches;
 pub mod trained;
+pub mod wants;
 
+mod damaging;
+mod finding;
 mod perform;
 mod planning;
 mod prompt;
 mod restore;
 mod show;
+mod surveying;
+mod table;
 mod worker;
 
 #[cfg(test)]
 mod tests;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
-use command::Command;
+use command::{Command, Scope};
+use known::Known;
 use playback::Playback;
 use predict::Predictor;
 use restore::Restoration;
-use settings::{History, Settings};
+use settings::{History, Sampling, Settings};
+use snapshot::board::BoardView;
 use snapshot::{Message, ModelInfo, Snapshot};
-use switches::Switches;
+use survey::Cache;
+use surveying::Survey;
+use table::Table;
+use wants::Wants;
 use worker::{Answer, Opened, Request, Shared, Target};
 pub use worker::{Found, THREAD};
 
@@ -60,6 +72,8 @@ const MOST_PENDING: usize = 1024;
 pub struct Session {
     source: Arc<dyn EpisodeSource>,
     models: Vec<Arc<ModelInfo>>,
+    /// The models themselves, for the threads that compute.
+    predictors: Vec<Arc<dyn Predictor>>,
     /// W of each model's position probe.
     position_weights: Vec<Option<Arc<[f32]>>>,
     shared: Arc<Shared>,
@@ -70,6 +84,21 @@ pub struct Session {
     history: History,
     /// Keys of a restored state string that mean nothing here, to be written back.
     unknown_keys: Vec<(String, String)>,
+    /// The model beside the present one, where one was chosen.
+    compare: Option<usize>,
+    /// Steps the user marked, by episode.
+    marks: BTreeMap<String, BTreeSet<usize>>,
+    /// Selected steps; the second is none until it is chosen.
+    selection: Option<(usize, Option<usize>)>,
+    table: Table,
+    survey: Option<Survey>,
+    cache: Option<Arc<dyn Cache>>,
+    /// What is known of each model's latent.
+    known: BTreeMap<usize, Arc<Known>>,
+    board: Option<Arc<BoardView>>,
+    wants: Wants,
+    /// So many failures on, once the episodes have been scored.
+    awaiting_failure: Option<i64>,
     /// What waits for the episode to be read.
     pending: VecDeque<Pending>,
     message: Option<Message>,
@@ -83,21 +112,40 @@ pub struct Session {
 
 enum Pending {
     Command(Command),
+    Seek(usize),
     Restoration(Restoration),
 }
 
-/// What a generation of requests asks for; the cursor only orders the work.
+/// What a generation of requests asks for. The cursor only orders the work, unless something is looked at that is
+/// computed for its step alone.
 #[derive(PartialEq)]
 struct Wanted {
     target: Target,
-    switches: Switches,
-    context: usize,
-    horizon: usize,
+    other: Option<usize>,
+    settings: Settings,
+    wants: Wants,
+    detail: Option<usize>,
+    known: Option<usize>,
+}
+
+impl Wanted {
+    /// The same for somebody who looks at numbers over a whole split.
+    fn without_what_only_pictures_show(mut self) -> Self {
+        self.settings.controls = None;
+        self.settings.sampling = Sampling::default();
+        self.settings.corruptions.clear();
+        Self {
+            wants: Wants::default(),
+            detail: None,
+            known: None,
+            ..self
+        }
+    }
 }
 
 impl Session {
     /// Shows the first episode with the first model, and starts to compute.
-    pub fn new(source: Arc<dyn EpisodeSource>, models: Vec<Box<dyn Predictor>>) -> Self {
+    pub fn new(source: Arc<dyn EpisodeSource>, models: Vec<Arc<dyn Predictor>>) -> Self {
         let infos: Vec<_> = models.iter().map(|m| Arc::new(m.info().clone())).collect();
         let position_weights = models
             .iter()
@@ -107,7 +155,18 @@ impl Session {
         let mut session = Self {
             shown: show::empty(source.as_ref(), &infos),
             models: infos,
+            predictors: models.clone(),
             position_weights,
+            compare: None,
+            marks: BTreeMap::new(),
+            selection: None,
+            table: Table::new(source.metas()),
+            survey: None,
+            cache: None,
+            known: BTreeMap::new(),
+            board: None,
+            wants: Wants::default(),
+            awaiting_failure: None,
             worker: None,
             target: Target {
                 model: 0,
@@ -176,7 +235,7 @@ impl Session {
     /// When `update` has something to do again; none while nothing plays and nothing is computed.
     pub fn next_wake(&self) -> Option<Duration> {
         let secs = self.opened().map_or(&[][..], |opened| &opened.view.secs);
-        let computing = self.is_busy().then_some(POLL);
+        let computing = (self.is_busy() || self.survey_runs()).then_some(POLL);
         let playing = self.playback.next_step_in(secs);
         computing.into_iter().chain(playing).min()
     }
@@ -194,7 +253,16 @@ impl Session {
     /// Waits until everything asked for has been computed; false if that takes longer than `timeout`.
     pub fn wait_idle(&mut self, timeout: Duration) -> bool {
         let deadline = Instant::now() + timeout;
-        while self.is_busy() {
+        loop {
+            if !self.is_busy() {
+                if !self.awaits_survey() {
+                    return true;
+                }
+                if !self.wait_for_survey(deadline) {
+                    return false;
+                }
+                continue;
+            }
             let Some(answer) = self.shared.answers.wait_until(deadline) else {
                 return false;
             };
@@ -203,7 +271,6 @@ impl Session {
                 self.settle(cursor);
             }
         }
-        true
     }
 
     /// Shows a line to the user that did not come from a command.
@@ -229,6 +296,14 @@ impl Session {
         self.answered()?.opened.as_ref()
     }
 
+    /// Puts the cursor on a step of an episode that may be yet to be read.
+    fn seek_when_open(&mut self, step: usize) {
+        match self.opened().map(|opened| opened.steps()) {
+            Some(steps) => self.playback.seek(step, steps),
+            None => self.pending.push_back(Pending::Seek(step)),
+        }
+    }
+
     fn is_busy(&self) -> bool {
         let is_done = |answer: &Answer| answer.done && answer.generation == self.generation;
         self.worker.is_some() && !self.answer.as_ref().is_some_and(is_done)
@@ -245,8 +320,9 @@ impl Session {
     /// Takes newer models, and what the worker has left; true if there was anything of use.
     fn collect(&mut self) -> bool {
         let renewed = self.take_renewed();
+        let surveyed = self.collect_survey();
         let answer = self.shared.answers.take();
-        answer.is_some_and(|answer| self.take_in(answer)) || renewed
+        answer.is_some_and(|answer| self.take_in(answer)) || renewed || surveyed
     }
 
     /// Drops an answer to an earlier request; else does what waited for its episode.
@@ -264,6 +340,7 @@ impl Session {
             for pending in std::mem::take(&mut self.pending) {
                 match pending {
                     Pending::Command(command) => self.perform(command),
+                    Pending::Seek(step) => self.playback.seek(step, steps),
                     Pending::Restoration(restoration) => self.finish(restoration),
                 }
             }
@@ -275,12 +352,7 @@ impl Session {
 
     /// Asks for what is wanted now and is not yet asked for, and shows the new state.
     fn settle(&mut self, cursor_before: usize) {
-        let wanted = Wanted {
-            target: self.target,
-            switches: self.settings.switches.clone(),
-            context: self.settings.context,
-            horizon: self.settings.horizon,
-        };
+        let wanted = self.wanted();
         let is_new = self.wanted.as_ref() != Some(&wanted);
         let moved = self.playback.cursor != cursor_before;
         if is_new {
@@ -293,9 +365,37 @@ impl Session {
                 target: self.target,
                 settings: self.settings.clone(),
                 cursor: self.playback.cursor,
+                other: self.other(),
+                wants: self.wants,
+                known: self.known.get(&self.target.model).map(Arc::clone),
             });
         }
+        self.ask_survey();
         self.refresh();
+    }
+
+    /// What there should be now.
+    fn wanted(&self) -> Wanted {
+        let detailed = self.wants.lattice || self.wants.spread;
+        Wanted {
+            target: self.target,
+            other: self.other(),
+            settings: Settings {
+                scope: Scope::default(),
+                ..self.settings.clone()
+            },
+            wants: self.wants,
+            detail: detailed.then_some(self.playback.cursor),
+            known: self.known.get(&self.target.model).map(|k| k.episodes),
+        }
+    }
+
+    /// The model beside the present one: the chosen one, else the next.
+    fn other(&self) -> Option<usize> {
+        let count = self.models.len();
+        let chosen = self.compare.filter(|&model| model < count);
+        let other = chosen.filter(|&model| model != self.target.model);
+        other.or_else(|| (count > 1).then(|| (self.target.model + 1) % count))
     }
 
     fn refresh(&mut self) {
@@ -306,6 +406,7 @@ impl Session {
 
 impl Drop for Session {
     fn drop(&mut self) {
+        self.end_survey();
         self.shared.requests.close();
         if let Some(worker) = self.worker.take() {
             // The worker catches panics; one that got past it has nothing left to tell.
@@ -324,6 +425,12 @@ fn waits_for_episode(command: &Command) -> bool {
             | Command::Episode(_)
             | Command::SelectEpisode(_)
             | Command::SelectModel(_)
+            | Command::CompareWith(_)
+            | Command::Failure(_)
+            | Command::CycleFailureOrder
+            | Command::RankBy(_)
+            | Command::SortBy(_)
+            | Command::Filter(_)
             | Command::Restore(_)
     )
 }

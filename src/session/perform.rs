@@ -74,9 +74,11 @@ impl Session {
                 self.inform(format!("speed {}", self.playback.speed()));
             }
             Command::CycleLoop => {
+                let selected = self.playback.selection.is_some();
                 let (looping, words) = match self.playback.looping {
                     Looping::Off => (Looping::All, "loops"),
-                    Looping::All => (Looping::Off, "stops at the end"),
+                    Looping::All if selected => (Looping::Selection, "loops the selection"),
+                    Looping::All | Looping::Selection => (Looping::Off, "stops at the end"),
                 };
                 self.playback.looping = looping;
                 self.inform(words.to_owned());
@@ -90,6 +92,27 @@ impl Session {
                 self.travel(after, "redo");
             }
             Command::Restore(text) => self.restore(&text),
+            Command::UseSet(active) => self.change(|session| session.use_set(&active)),
+            Command::Corrupt {
+                modality,
+                corruption,
+            } => self.change(|session| session.corrupt(modality, corruption)),
+            Command::EditControls(edit) => self.change(|session| session.edit_controls(edit)),
+            Command::ToggleSamples => self.change(|session| Ok(session.toggle_samples())),
+            Command::SetSamples(count) => self.change(|session| session.set_samples(count)),
+            Command::SetSeed(seed) => self.change(|session| {
+                session.settings.sampling.seed = seed;
+                Ok(format!("seed {seed}"))
+            }),
+            Command::CompareWith(model) => self.compare_with(model),
+            Command::Failure(by) => self.failure(by),
+            Command::CycleFailureOrder => self.rank_by(self.table.view().order.next()),
+            Command::RankBy(order) => self.rank_by(order),
+            Command::SortBy(column) => self.table.sort_by(column),
+            Command::Filter(text) => self.table.filter(text),
+            Command::Event(by) => self.go_events(by, steps),
+            Command::ToggleMark => self.toggle_mark(),
+            Command::Select => self.select(),
         }
     }
 
@@ -182,6 +205,23 @@ impl Session {
             });
         } else {
             self.complain(format!("episode {} is outside 1 to {count}", episode + 1));
+        }
+    }
+
+    fn compare_with(&mut self, model: usize) {
+        match self.models.get(model) {
+            Some(_) if model == self.target.model => {
+                self.complain("a model is compared with another one".to_owned());
+            }
+            Some(info) => {
+                let text = format!("beside it: {}", info.name);
+                self.compare = Some(model);
+                self.inform(text);
+            }
+            None => {
+                let count = self.models.len();
+                self.complain(format!("model {} is outside 1 to {count}", model + 1));
+            }
         }
     }
 

@@ -20,6 +20,8 @@ pub struct Playback {
     pub playing: bool,
     /// What it does at the end.
     pub looping: Looping,
+    /// First and last selected step.
+    pub selection: Option<(usize, usize)>,
     /// Speed as a power of two.
     exponent: i64,
     /// Recorded seconds gone by since the cursor came to its step.
@@ -77,11 +79,14 @@ impl Playback {
         let before = (self.cursor, self.playing);
         let gone = dt.as_secs_f64().min(LONGEST_UPDATE_SECS) * f64::from(self.speed());
         self.into_step_secs += gone;
+        let (first, last) = self.round(secs.len());
         while self.into_step_secs >= step_secs(secs, self.cursor) {
             self.into_step_secs -= step_secs(secs, self.cursor);
-            if self.cursor + 1 < secs.len() {
+            if self.looping == Looping::Selection && !(first..last).contains(&self.cursor) {
+                self.cursor = first;
+            } else if self.cursor + 1 < secs.len() {
                 self.cursor += 1;
-            } else if self.looping == Looping::All {
+            } else if self.looping != Looping::Off {
                 self.cursor = 0;
             } else {
                 self.playing = false;
@@ -90,6 +95,13 @@ impl Playback {
             }
         }
         before != (self.cursor, self.playing)
+    }
+
+    /// First and last step of a round.
+    fn round(&self, steps: usize) -> (usize, usize) {
+        let (first, last) = self.selection.unwrap_or((0, usize::MAX));
+        let end = steps.saturating_sub(1);
+        (first.min(end), last.min(end))
     }
 
     /// Time until the cursor moves on; none while it rests.
@@ -195,6 +207,19 @@ mod tests {
         playback.update(Duration::from_secs(1), &[0.0, -5.0, f64::NAN, 0.0]);
         playback.update(Duration::from_secs(1), &[0.0]);
         playback.update(Duration::from_secs(1), &[]);
+    }
+
+    #[test]
+    fn a_selection_goes_round() {
+        let mut playback = playing(Looping::Selection);
+        playback.selection = Some((0, 1));
+        let mut seen = Vec::new();
+        for _ in 0..5 {
+            let left = playback.next_step_in(&SECS).unwrap_or_default();
+            playback.update(left + Duration::from_millis(1), &SECS);
+            seen.push(playback.cursor);
+        }
+        assert_eq!(seen, [1, 0, 1, 0, 1]);
     }
 
     #[test]

@@ -57,6 +57,8 @@ impl Session {
         };
         *info = Arc::new(predictor.info().clone());
         self.position_weights[index] = predictor.position_weights().map(Arc::from);
+        self.predictors[index] = Arc::clone(&predictor);
+        self.survey_anew(index, &predictor);
         let mut successors = self
             .shared
             .successors

@@ -4,12 +4,13 @@ use std::sync::Arc;
 
 use super::Session;
 use super::badge::badge;
-use super::settings::{Rollout, Settings};
+use super::settings::{Rollout, Sampling, Settings};
+use super::snapshot::other::OtherView;
 use super::snapshot::{
     Badge, ErrorOf, Estimate, ExpertView, FrameRow, LatentView, Message, ModelInfo, PositionView,
     SignedFrame, Snapshot,
 };
-use super::worker::{Answer, Inferred};
+use super::worker::{Answer, Inferred, Opened, Pictures};
 use crate::episode::{EpisodeSource, Frame};
 use crate::measure::frame::signed_difference;
 use crate::measure::fusion::{mean_share, position_shares, precision_shares};
@@ -35,6 +36,7 @@ impl Session {
         let inferred = answer.and_then(|answer| answer.inferred.as_deref());
         let at_cursor = inferred.zip(cursor.checked_sub(first_belief));
         let fault = answer.and_then(|answer| answer.fault.clone());
+        let readings = answer.and_then(|answer| answer.readings.as_deref());
         Snapshot {
             models: self.models.clone(),
             model: self.target.model,
@@ -53,22 +55,59 @@ impl Session {
                 badge(m, &self.settings.switches, first_belief, badge_step)
             }),
             frames: answer
-                .map(|answer| frame_row(answer, cursor))
+                .map(|answer| FrameRow {
+                    input: input(answer, cursor),
+                    ..frame_row(&answer.pictures, cursor)
+                })
                 .unwrap_or_default(),
             strip: answer
-                .map(|answer| Arc::clone(&answer.strip))
+                .map(|answer| Arc::clone(&answer.pictures.strip))
                 .unwrap_or_default(),
-            position: answer.and_then(|answer| position_view(answer, cursor)),
+            position: answer.and_then(|a| position_view(a.opened.as_ref()?, &a.pictures, cursor)),
             belief: at_cursor
                 .map(|(inferred, belief)| latent_view(inferred.beliefs.posterior.row(belief))),
             psnr_db: answer
-                .map(|answer| Arc::clone(&answer.psnr_db))
+                .map(|answer| Arc::clone(&answer.pictures.psnr_db))
                 .unwrap_or_default(),
+            fusion: readings.and_then(|readings| readings.fusion.get(cursor)?.clone()),
+            series: readings.map(|readings| Arc::clone(&readings.series)),
+            lattice: answer.and_then(|answer| answer.lattice.clone()),
+            spread: answer.and_then(|answer| answer.spread.clone()),
+            board: self.board.clone().filter(|_| self.wants.board),
+            table: Arc::clone(self.table.view()),
+            other: answer
+                .and_then(|answer| other_view(answer, cursor))
+                .map(Arc::new),
+            events: self.events(),
+            corruptions: self
+                .settings
+                .corruptions
+                .iter()
+                .map(|(&modality, &corruption)| (modality, corruption))
+                .collect(),
+            control_edit: self.settings.controls,
+            sampling: self.settings.sampling,
+            selection: self.selection.map(|(first, last)| {
+                let last = last.unwrap_or(cursor);
+                (first.min(last), first.max(last))
+            }),
             message: self.line(fault),
             busy: self.is_busy(),
+            current: self.is_current(),
             state: self.state().to_string(),
             ..empty(self.source.as_ref(), &[])
         }
+    }
+
+    /// Whether the newest answer has the images at the cursor, or will never have them.
+    fn is_current(&self) -> bool {
+        let Some(answer) = self.answered().filter(|a| a.generation == self.generation) else {
+            return false;
+        };
+        let cursor = self.playback.cursor;
+        let cell = answer.pictures.strip.get(cursor);
+        let first_belief = self.model().map_or(0, |model| model.frame_stack);
+        answer.done || cell.is_some_and(|cell| cell.belief.is_some() || cursor < first_belief)
     }
 
     /// A refusal first, for it answers the last key; then what went wrong; then what went well.
@@ -88,8 +127,10 @@ impl Session {
         let step = self.playback.cursor.max(model.frame_stack);
         let at_cursor = inferred.zip(self.playback.cursor.checked_sub(model.frame_stack));
         let shares = at_cursor.map(|(inferred, belief)| {
-            let alphas = inferred.factor_alphas(belief, model.prior_expert);
-            precision_shares(&alphas, &inferred.log_vars(belief))
+            let factors = inferred.factors(belief);
+            let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
+            let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
+            precision_shares(&alphas, &log_vars)
         });
         let position = at_cursor
             .zip(shares.as_ref())
@@ -157,8 +198,21 @@ pub(super) fn empty(source: &dyn EpisodeSource, models: &[Arc<ModelInfo>]) -> Sn
         position: None,
         belief: None,
         psnr_db: Arc::default(),
+        fusion: None,
+        series: None,
+        lattice: None,
+        spread: None,
+        board: None,
+        table: Arc::default(),
+        other: None,
+        events: Arc::default(),
+        corruptions: Vec::new(),
+        control_edit: None,
+        sampling: Sampling::default(),
+        selection: None,
         message: None,
         busy: false,
+        current: false,
         state: String::new(),
     }
 }
@@ -178,8 +232,8 @@ fn latent_view((mean, log_var): (&[f32], &[f32])) -> LatentView {
     }
 }
 
-fn frame_row(answer: &Answer, cursor: usize) -> FrameRow {
-    let Some(cell) = answer.strip.get(cursor) else {
+fn frame_row(pictures: &Pictures, cursor: usize) -> FrameRow {
+    let Some(cell) = pictures.strip.get(cursor) else {
         return FrameRow::default();
     };
     let (compared, error_of) = match &cell.prediction {
@@ -192,7 +246,15 @@ fn frame_row(answer: &Answer, cursor: usize) -> FrameRow {
         prediction: cell.prediction.clone(),
         error: compared.and_then(|frame| signed_frame(frame, &cell.truth)),
         error_of,
+        input: None,
     }
+}
+
+/// The frame that the model sees, where it is not the recorded one.
+fn input(answer: &Answer, cursor: usize) -> Option<Arc<Frame>> {
+    let input = answer.input.get(cursor)?;
+    let truth = answer.opened.as_ref()?.truth.get(cursor)?;
+    (input != truth).then(|| Arc::clone(input))
 }
 
 fn signed_frame(frame: &Frame, truth: &Frame) -> Option<Arc<SignedFrame>> {
@@ -204,10 +266,9 @@ fn signed_frame(frame: &Frame, truth: &Frame) -> Option<Arc<SignedFrame>> {
     }))
 }
 
-fn position_view(answer: &Answer, cursor: usize) -> Option<PositionView> {
-    let opened = answer.opened.as_ref()?;
-    let belief = Arc::clone(answer.belief_positions.as_ref()?);
-    let prediction = answer.rollout_positions.clone().unwrap_or_default();
+fn position_view(opened: &Opened, pictures: &Pictures, cursor: usize) -> Option<PositionView> {
+    let belief = Arc::clone(pictures.belief_positions.as_ref()?);
+    let prediction = pictures.rollout_positions.clone().unwrap_or_default();
     let error_m = |estimates: &[Option<Estimate>]| {
         let (estimate, truth) = ((*estimates.get(cursor)?)?, opened.poses.get(cursor)?);
         Some((estimate.x - truth.x).hypot(estimate.y - truth.y))
@@ -219,5 +280,28 @@ fn position_view(answer: &Answer, cursor: usize) -> Option<PositionView> {
         prediction_error_m: error_m(&prediction),
         belief,
         prediction,
+        recorded_controls: pictures.recorded_positions.clone().unwrap_or_default(),
+    })
+}
+
+/// The second model beside the first.
+fn other_view(answer: &Answer, cursor: usize) -> Option<OtherView> {
+    let other = answer.other.as_ref()?;
+    let (own, beside) = (
+        answer.pictures.strip.get(cursor)?,
+        other.pictures.strip.get(cursor),
+    );
+    let pair = beside.and_then(|beside| {
+        let predictions = own.prediction.as_ref().zip(beside.prediction.as_ref());
+        predictions.or_else(|| own.belief.as_ref().zip(beside.belief.as_ref()))
+    });
+    Some(OtherView {
+        model: other.model,
+        frames: frame_row(&other.pictures, cursor),
+        difference: pair.and_then(|(own, beside)| signed_frame(own, beside)),
+        strip: Arc::clone(&other.pictures.strip),
+        position: position_view(answer.opened.as_ref()?, &other.pictures, cursor),
+        psnr_db: Arc::clone(&other.pictures.psnr_db),
+        fault: other.fault.clone(),
     })
 }

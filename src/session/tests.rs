@@ -5,7 +5,11 @@
     reason = "a test may stop here; α is compared as it was set"
 )]
 
+mod comparing;
+mod damaging;
 mod faults;
+mod finding;
+mod lattice;
 mod random;
 mod renewing;
 mod switching;

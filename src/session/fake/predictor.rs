@@ -105,6 +105,13 @@ impl FakePredictor {
         self
     }
 
+    /// The same, with a hash to be kept by.
+    #[must_use]
+    pub fn with_hash(mut self, hash: &str) -> Self {
+        hash.clone_into(&mut self.info.hash);
+        self
+    }
+
     /// Its counters.
     pub fn calls(&self) -> Arc<Calls> {
         Arc::clone(&self.calls)

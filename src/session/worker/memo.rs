@@ -1,23 +1,33 @@
 //! What has been computed, kept as long as it is likely to be asked for again.
 //!
-//! An episode is read once for a layout and encoded once for a model; the filter runs once for a setting of the
-//! switches. So a switch never encodes, and switching back shows what was there without computing it again.
+//! An episode is read once for a layout and encoded once for a model; a damaged input encodes its own experts once
+//! more; the filter runs once for a setting of the switches. So a switch never encodes, and switching back shows what
+//! was there without computing it again.
 
 use std::sync::Arc;
 
+use super::inferred::{Inferred, infer};
+use super::lattice::Lattice;
 use super::lru::Lru;
 use super::opened::Opened;
 use super::pictured::Pictured;
+use super::readings::{Readings, ReadingsKey};
+use super::spread::{Spread, SpreadKey};
 use crate::episode::{Episode, EpisodeSource, Layout, SourceError};
-use crate::measure::fusion::{mean_share, precision_shares};
-use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace};
+use crate::measure::corruption::{Corruption, corrupt};
+use crate::modality::Modality;
+use crate::model::trace::{Alphas, ExpertTrace, GaussianTrace};
 use crate::session::predict::{PredictError, Predictor};
-use crate::session::settings::Rollout;
+use crate::session::settings::{ControlEdit, Rollout};
 
 /// Episodes and encodings kept.
 const EPISODES: usize = 8;
 /// Settings of the switches kept, with their decoded frames.
-const BELIEFS: usize = 16;
+const BELIEFS: usize = 24;
+/// Damaged inputs kept.
+const DAMAGED: usize = 24;
+/// Lattices and spreads kept.
+const FEW: usize = 4;
 
 /// One model on one episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,42 +38,32 @@ pub struct Target {
     pub episode: usize,
 }
 
-/// The filter's answer to one setting of the switches.
-#[derive(Debug)]
-pub struct Inferred {
-    /// The switches it was made with.
-    pub alphas: Alphas,
-    /// What the experts said.
-    pub trace: Arc<ExpertTrace>,
-    /// What came out.
-    pub beliefs: BeliefTrace,
-    /// For each expert its mean precision share at every step; NaN before the first belief.
-    pub share_over_time: Vec<Arc<Vec<f32>>>,
+/// What the experts of a model look at: an episode, damaged or not.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sight {
+    /// Which.
+    pub target: Target,
+    /// What is wrong with its modalities.
+    pub damage: Vec<(Modality, Corruption)>,
 }
 
-impl Inferred {
-    /// Log-variances of every expert at a belief, the prior last.
-    pub fn log_vars(&self, belief: usize) -> Vec<&[f32]> {
-        let sensors = self.trace.experts.iter();
-        let all = sensors.chain([&self.beliefs.prior]);
-        all.map(|gaussians| gaussians.row(belief).1).collect()
-    }
-
-    /// α of the experts that are multiplied; 0 for a prior that is none of them.
-    pub fn factor_alphas(&self, belief: usize, prior_expert: bool) -> Vec<f32> {
-        let mut alphas = self.alphas.row(belief).to_vec();
-        if let (false, Some(prior)) = (prior_expert, alphas.last_mut()) {
-            *prior = 0.0;
-        }
-        alphas
-    }
-}
-
-/// A setting of the switches, compared bit for bit.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A setting of the switches over what is seen, compared bit for bit.
+#[derive(Clone, Debug, PartialEq)]
 pub struct BeliefKey {
-    target: Target,
+    /// What is seen.
+    pub sight: Sight,
     alpha_bits: Vec<u32>,
+}
+
+/// Which rollout: from where, how far, under which controls; of the mean path, or the first sample of this seed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RolloutKey {
+    /// Its steps.
+    pub rollout: Rollout,
+    /// Other controls than the recorded ones.
+    pub controls: Option<ControlEdit>,
+    /// Seed of the sample; none for the mean path.
+    pub sample: Option<u64>,
 }
 
 /// Beliefs and their pictures.
@@ -79,20 +79,35 @@ pub struct Believed {
 #[derive(Debug)]
 pub struct Memo {
     episodes: Lru<(usize, Layout), Arc<Episode>>,
+    damaged: Lru<(usize, Layout, Vec<(Modality, Corruption)>), Arc<Episode>>,
     opened: Lru<Target, Arc<Opened>>,
-    traces: Lru<Target, Arc<ExpertTrace>>,
+    clean: Lru<Target, Arc<ExpertTrace>>,
+    seen: Lru<(Sight, usize), Arc<GaussianTrace>>,
+    traces: Lru<Sight, Arc<ExpertTrace>>,
     beliefs: Lru<BeliefKey, Believed>,
-    rollouts: Lru<(BeliefKey, Rollout), Pictured>,
+    rollouts: Lru<(BeliefKey, RolloutKey), Pictured>,
+    /// Readings, lattices and spreads.
+    pub readings: Lru<ReadingsKey, Arc<Readings>>,
+    /// All sets of experts.
+    pub lattices: Lru<Sight, Lattice>,
+    /// Samples of rollouts.
+    pub spreads: Lru<SpreadKey, Spread>,
 }
 
 impl Default for Memo {
     fn default() -> Self {
         Self {
             episodes: Lru::new(EPISODES),
+            damaged: Lru::new(FEW),
             opened: Lru::new(EPISODES),
-            traces: Lru::new(EPISODES),
+            clean: Lru::new(EPISODES),
+            seen: Lru::new(DAMAGED),
+            traces: Lru::new(DAMAGED),
             beliefs: Lru::new(BELIEFS),
             rollouts: Lru::new(BELIEFS),
+            readings: Lru::new(BELIEFS),
+            lattices: Lru::new(FEW),
+            spreads: Lru::new(FEW),
         }
     }
 }
@@ -105,11 +120,34 @@ impl Memo {
         index: usize,
         layout: Layout,
     ) -> Result<Arc<Episode>, SourceError> {
-        let key = (index, layout);
         let load = || source.load(index, layout).map(Arc::new);
         self.episodes
-            .get_or_try_insert(key, load)
+            .get_or_try_insert((index, layout), load)
             .map(|episode| Arc::clone(episode))
+    }
+
+    /// The episode as it is with some of its modalities damaged.
+    pub fn damaged(
+        &mut self,
+        index: usize,
+        episode: &Arc<Episode>,
+        damage: &[(Modality, Corruption)],
+    ) -> Arc<Episode> {
+        if damage.is_empty() {
+            return Arc::clone(episode);
+        }
+        let spoil = || {
+            let mut spoilt = corrupt(episode, damage[0].0, &damage[0].1);
+            for (modality, corruption) in &damage[1..] {
+                spoilt = corrupt(&spoilt, *modality, corruption);
+            }
+            Ok::<_, std::convert::Infallible>(Arc::new(spoilt))
+        };
+        let key = (index, episode.layout, damage.to_vec());
+        match self.damaged.get_or_try_insert(key, spoil) {
+            Ok(spoilt) => Arc::clone(spoilt),
+            Err(never) => match never {},
+        }
     }
 
     /// What can be shown of it before any model has run.
@@ -129,44 +167,79 @@ impl Memo {
 
     /// Drops what came from a model.
     pub fn forget(&mut self, model: usize) {
+        let of = |sight: &Sight| sight.target.model == model;
         self.opened.forget(|target| target.model == model);
-        self.traces.forget(|target| target.model == model);
-        self.beliefs.forget(|key| key.target.model == model);
-        self.rollouts.forget(|(key, _)| key.target.model == model);
+        self.clean.forget(|target| target.model == model);
+        self.seen.forget(|(sight, _)| of(sight));
+        self.traces.forget(of);
+        self.beliefs.forget(|key| of(&key.sight));
+        self.rollouts.forget(|(key, _)| of(&key.sight));
+        self.readings.forget(|key| of(&key.belief.sight));
+        self.lattices.forget(of);
+        self.spreads.forget(|key| of(&key.belief.sight));
     }
 
-    /// What the experts say of the episode.
+    /// What the experts say of an episode: those whose input is damaged are asked again, the others are not.
     pub fn trace(
         &mut self,
-        target: Target,
-        episode: &Episode,
+        sight: &Sight,
+        episode: &Arc<Episode>,
         predictor: &dyn Predictor,
     ) -> Result<Arc<ExpertTrace>, PredictError> {
+        if let Some(trace) = self.traces.get(sight) {
+            return Ok(Arc::clone(trace));
+        }
         let encode = || predictor.encode(episode).map(Arc::new);
+        let clean = self.clean.get_or_try_insert(sight.target, encode)?;
+        let mut trace = Arc::clone(clean);
+        for (i, expert) in predictor.info().experts.iter().enumerate() {
+            let own =
+                |(modality, _): &&(Modality, Corruption)| expert.modalities().contains(modality);
+            let damage: Vec<_> = sight.damage.iter().filter(own).copied().collect();
+            if damage.is_empty() {
+                continue;
+            }
+            let spoilt = self.damaged(sight.target.episode, episode, &damage);
+            let encode = || predictor.encode_expert(&spoilt, i).map(Arc::new);
+            let only = Sight {
+                target: sight.target,
+                damage,
+            };
+            let seen = self.seen.get_or_try_insert((only, i), encode)?;
+            Arc::make_mut(&mut trace).experts[i] = GaussianTrace::clone(seen);
+        }
+        let keep = || Ok::<_, PredictError>(trace);
         self.traces
-            .get_or_try_insert(target, encode)
+            .get_or_try_insert(sight.clone(), keep)
             .map(|trace| Arc::clone(trace))
     }
 
-    /// Whether it is known what the experts say.
+    /// Whether it is known what the experts say of the undamaged episode.
     pub fn is_encoded(&mut self, target: Target) -> bool {
-        self.traces.get(&target).is_some()
+        self.clean.get(&target).is_some()
     }
 
     /// Filters for one setting of the switches.
     pub fn believe(
         &mut self,
-        target: Target,
+        sight: &Sight,
         trace: &Arc<ExpertTrace>,
         alphas: Alphas,
         steps: usize,
         predictor: &dyn Predictor,
     ) -> Result<BeliefKey, PredictError> {
         let key = BeliefKey {
-            target,
+            sight: sight.clone(),
             alpha_bits: alphas.values.iter().map(|alpha| alpha.to_bits()).collect(),
         };
-        let filter = || infer(Arc::clone(trace), alphas, steps, predictor);
+        let filter = || {
+            let inferred = infer(Arc::clone(trace), alphas, steps, predictor)?;
+            let posterior = inferred.beliefs.posterior.clone();
+            Ok::<_, PredictError>(Believed {
+                pictured: Pictured::new(predictor, posterior, predictor.info().frame_stack, steps),
+                inferred: Arc::new(inferred),
+            })
+        };
         self.beliefs.get_or_try_insert(key.clone(), filter)?;
         Ok(key)
     }
@@ -176,80 +249,39 @@ impl Memo {
         self.beliefs.get(key)
     }
 
+    /// The numbers of beliefs that were filtered just before.
+    pub fn inferred(&mut self, key: &BeliefKey) -> Option<Arc<Inferred>> {
+        self.beliefs
+            .get(key)
+            .map(|believed| Arc::clone(&believed.inferred))
+    }
+
     /// Rolls out from these beliefs, where there is a step to predict.
     pub fn roll_out(
         &mut self,
         key: &BeliefKey,
-        rollout: Rollout,
+        which: RolloutKey,
         steps: usize,
         predictor: &dyn Predictor,
     ) -> Result<(), PredictError> {
-        if rollout.horizon == 0 {
+        if which.rollout.horizon == 0 {
             return Ok(());
         }
-        let Some(inferred) = self
-            .beliefs
-            .get(key)
-            .map(|believed| Arc::clone(&believed.inferred))
-        else {
+        let Some(inferred) = self.inferred(key) else {
             return Ok(());
         };
-        let from = rollout.start.saturating_sub(predictor.info().frame_stack);
+        let first = which.rollout.start + 1;
         let roll = || {
-            let controls = inferred.trace.controls.get(from..from + rollout.horizon);
-            let controls = controls.ok_or_else(|| {
-                PredictError(format!(
-                    "a rollout of {} steps from belief {from} needs controls that were not recorded",
-                    rollout.horizon
-                ))
-            })?;
-            let rolled = predictor.rollout(&inferred.beliefs, from, controls)?;
-            let (first, gaussians) = (rollout.start + 1, rolled.gaussians);
-            Ok::<_, PredictError>(Pictured::new(predictor, gaussians, first, steps))
+            let trace = inferred.roll_out(which, predictor)?;
+            Ok::<_, PredictError>(Pictured::new(predictor, trace, first, steps))
         };
         self.rollouts
-            .get_or_try_insert((key.clone(), rollout), roll)?;
+            .get_or_try_insert((key.clone(), which), roll)?;
         Ok(())
     }
 
     /// A rollout that was made just before.
-    pub fn rolled_out(&mut self, key: &BeliefKey, rollout: Rollout) -> Option<&mut Pictured> {
-        self.rollouts.get(&(key.clone(), rollout))
+    pub fn rolled_out(&mut self, key: &BeliefKey, which: RolloutKey) -> Option<&mut Pictured> {
+        self.rollouts.get(&(key.clone(), which))
     }
-}
-
-fn infer(
-    trace: Arc<ExpertTrace>,
-    alphas: Alphas,
-    steps: usize,
-    predictor: &dyn Predictor,
-) -> Result<Believed, PredictError> {
-    let beliefs = predictor.filter(&trace, &alphas)?;
-    let (info, count) = (predictor.info(), beliefs.posterior.len());
-    if count + info.frame_stack != steps || beliefs.prior.len() != count {
-        return Err(PredictError(format!(
-            "{} made {count} beliefs for {steps} steps",
-            info.name
-        )));
-    }
-    let mut inferred = Inferred {
-        share_over_time: Vec::new(),
-        alphas,
-        trace,
-        beliefs,
-    };
-    let mut over_time = vec![vec![f32::NAN; steps]; inferred.alphas.experts];
-    for belief in 0..count {
-        let alphas = inferred.factor_alphas(belief, info.prior_expert);
-        let shares = precision_shares(&alphas, &inferred.log_vars(belief));
-        for (row, share) in over_time.iter_mut().zip(shares) {
-            row[belief + info.frame_stack] = mean_share(&share);
-        }
-    }
-    inferred.share_over_time = over_time.into_iter().map(Arc::new).collect();
-    let posterior = inferred.beliefs.posterior.clone();
-    Ok(Believed {
-        pictured: Pictured::new(predictor, posterior, info.frame_stack, steps),
-        inferred: Arc::new(inferred),
-    })
 }

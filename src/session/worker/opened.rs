@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::episode::{Episode, Frame, PlanarPose};
+use crate::measure::events::onsets;
 use crate::session::snapshot::EpisodeView;
 
 /// What does not depend on any model's answer.
@@ -16,6 +17,15 @@ pub struct Opened {
     pub poses: Arc<Vec<PlanarPose>>,
     /// End-effector positions; empty if not recorded.
     pub tip: Arc<Vec<[f32; 2]>>,
+    /// Steps at which contact begins.
+    pub onsets: Vec<usize>,
+}
+
+/// The force at which contact counts as begun: a quarter of the episode's strongest, and no less than a sensor's noise.
+fn contact_newtons(force_newtons: &[f32]) -> f32 {
+    const NOISE: f32 = 0.1;
+    let strongest = force_newtons.iter().copied().fold(0.0, f32::max);
+    (0.25 * strongest).max(NOISE)
 }
 
 impl Opened {
@@ -23,7 +33,8 @@ impl Opened {
     pub fn new(episode: &Episode, missing: Vec<String>) -> Self {
         let steps = episode.steps();
         let first = episode.steps_nanos.first().copied().unwrap_or_default();
-        let force_newtons = (0..steps).map_while(|t| episode.force_newtons(t)).collect();
+        let force_newtons: Vec<f32> = (0..steps).map_while(|t| episode.force_newtons(t)).collect();
+        let onsets = onsets(&force_newtons, contact_newtons(&force_newtons));
         let view = EpisodeView {
             id: episode.meta.id.clone(),
             split: episode.meta.split,
@@ -55,6 +66,7 @@ impl Opened {
             truth: episode.frames.iter().cloned().map(Arc::new).collect(),
             poses: Arc::new(episode.object.clone().unwrap_or_default()),
             tip: Arc::new(episode.tip.clone().unwrap_or_default()),
+            onsets,
         }
     }
 

@@ -1,0 +1,24 @@
+//! What a face is about to show besides the usual: what nobody looks at is not computed.
+
+use super::Session;
+
+/// What to compute besides beliefs, rollout and readings.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wants {
+    /// Every set of experts at the cursor.
+    pub lattice: bool,
+    /// The spread of the rollout, with samples.
+    pub spread: bool,
+    /// Consistency over a split.
+    pub board: bool,
+}
+
+impl Session {
+    /// Says what is looked at from now on.
+    pub fn want(&mut self, wants: Wants) {
+        if self.wants != wants {
+            self.wants = wants;
+            self.settle(self.playback.cursor);
+        }
+    }
+}
