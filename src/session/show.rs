@@ -73,6 +73,9 @@ impl Session {
             series: readings.map(|readings| Arc::clone(&readings.series)),
             lattice: answer.and_then(|answer| answer.lattice.clone()),
             spread: answer.and_then(|answer| answer.spread.clone()),
+            responses: answer
+                .map(|answer| Arc::clone(&answer.responses))
+                .unwrap_or_default(),
             board: self.board.clone().filter(|_| self.wants.board),
             table: Arc::clone(self.table.view()),
             other: answer
@@ -202,6 +205,7 @@ pub(super) fn empty(source: &dyn EpisodeSource, models: &[Arc<ModelInfo>]) -> Sn
         series: None,
         lattice: None,
         spread: None,
+        responses: Arc::default(),
         board: None,
         table: Arc::default(),
         other: None,

@@ -4,6 +4,7 @@ pub mod board;
 pub mod lattice;
 pub mod other;
 pub mod reading;
+pub mod response;
 pub mod spread;
 pub mod table;
 
@@ -20,6 +21,7 @@ use board::BoardView;
 use lattice::LatticeView;
 use other::OtherView;
 use reading::{FusionView, SeriesView};
+use response::ResponseView;
 use spread::SpreadView;
 use table::TableView;
 
@@ -76,6 +78,8 @@ pub struct Snapshot {
     pub lattice: Option<Arc<LatticeView>>,
     /// How sure the rollout is, in three ways; none until computed, and where nobody asked for it.
     pub spread: Option<Arc<SpreadView>>,
+    /// How the fusion answers to each damage of rising severity; empty until computed, and where nobody asked for it.
+    pub responses: Arc<Vec<ResponseView>>,
     /// Consistency over a split; none where nobody asked for it.
     pub board: Option<Arc<BoardView>>,
     /// Every episode of the dataset.

@@ -9,6 +9,8 @@ pub struct Wants {
     pub lattice: bool,
     /// The spread of the rollout, with samples.
     pub spread: bool,
+    /// The response to damage of rising severity.
+    pub response: bool,
     /// Consistency over a split.
     pub board: bool,
 }

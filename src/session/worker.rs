@@ -15,6 +15,7 @@ mod noise;
 mod opened;
 mod pictured;
 mod readings;
+mod response;
 mod spread;
 
 use std::any::Any;

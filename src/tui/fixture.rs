@@ -228,6 +228,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
         series: Some(bench::series(steps)),
         lattice: Some(bench::lattice(cursor)),
         spread: Some(bench::spread(cursor, steps)),
+        responses: Arc::default(),
         board: Some(bench::board()),
         table: bench::table(steps),
         other: None,

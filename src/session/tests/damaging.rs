@@ -140,3 +140,24 @@ fn samples_have_the_same_noise_whenever_they_are_asked_for() {
     let more = run(&mut session, [SetSeed(0), SetSamples(64)]);
     assert_eq!(more.spread.unwrap().fan, spread.fan);
 }
+
+#[test]
+fn a_response_goes_from_no_damage_to_all_of_it() {
+    let mut session = session();
+    session.want(Wants {
+        response: true,
+        ..Wants::default()
+    });
+    assert!(run(&mut session, [SeekTo(7)]).responses.is_empty());
+    let bias = corrupt(Modality::Proprio, damage(Damage::Bias, 0.4));
+    let responses = run(&mut session, [bias]).responses;
+    let [response] = responses.as_slice() else {
+        panic!("one damage, one response")
+    };
+    assert_eq!((response.severity.len(), response.severity[10]), (11, 1.0));
+    assert!(response.rmse_m[10] > response.rmse_m[0] && response.nees[10] > response.nees[0]);
+    // The fake states the same spread whatever it sees.
+    assert!(response.slope.abs() < 1e-5 && response.sentence.contains("does not notice"));
+    let off = run(&mut session, [ToggleExpert(2)]).responses;
+    assert!(off[0].sentence.contains("is off"));
+}

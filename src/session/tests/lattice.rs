@@ -6,6 +6,7 @@ use crate::session::wants::Wants;
 const LATTICE: Wants = Wants {
     lattice: true,
     spread: false,
+    response: false,
     board: false,
 };
 

@@ -10,6 +10,7 @@ use crate::episode::Frame;
 use crate::session::known::Known;
 use crate::session::settings::Settings;
 use crate::session::snapshot::lattice::LatticeView;
+use crate::session::snapshot::response::ResponseView;
 use crate::session::snapshot::spread::SpreadView;
 use crate::session::snapshot::{Estimate, StepPsnr, StripCell};
 use crate::session::wants::Wants;
@@ -72,6 +73,8 @@ pub struct Answer {
     pub lattice: Option<Arc<LatticeView>>,
     /// The spread of the rollout.
     pub spread: Option<Arc<SpreadView>>,
+    /// Responses to damage.
+    pub responses: Arc<Vec<ResponseView>>,
     /// What went wrong.
     pub fault: Option<String>,
     /// Whether nothing more will come.
@@ -118,6 +121,7 @@ impl Answer {
             other: None,
             lattice: None,
             spread: None,
+            responses: Arc::default(),
             fault: None,
             done: false,
         }

@@ -7,6 +7,7 @@ use super::lattice::Lattice;
 use super::memo::{BeliefKey, RolloutKey};
 use super::opened::Opened;
 use super::readings::{self, ReadingsKey};
+use super::response::{ResponseKey, respond};
 use super::spread::{Spread, SpreadKey};
 use super::{Stop, Worker};
 use crate::episode::{Episode, Layout};
@@ -71,7 +72,7 @@ impl Worker {
                 .unwrap_or_default();
             left_of_other.truncate(DECODED_AT_ONCE);
             if left.is_empty() && left_of_other.is_empty() {
-                return Ok(());
+                return self.respond(request, &look, &episode, &opened, answer);
             }
             self.publish(answer);
             self.check()?;
@@ -349,6 +350,50 @@ impl Worker {
         let spread = self.memo.spreads.get_or_try_insert(key.clone(), make)?;
         let view = spread.at(request.cursor, opened, mean_path.as_deref(), predictor)?;
         answer.spread = Some(Arc::new(view));
+        Ok(())
+    }
+}
+
+impl Worker {
+    /// Lets each damage rise from none to all of it; the last thing that is done, for it encodes many times.
+    fn respond(
+        &mut self,
+        request: &Request,
+        look: &Look,
+        episode: &Episode,
+        opened: &Opened,
+        answer: &mut Answer,
+    ) -> Result<(), Stop> {
+        if !request.wants.response {
+            return Ok(());
+        }
+        let Some(inferred) = self.memo.inferred(&look.key) else {
+            return Ok(());
+        };
+        let mut responses = Vec::new();
+        for &damage in &look.key.sight.damage {
+            let key = ResponseKey {
+                belief: look.key.clone(),
+                modality: damage.0,
+            };
+            let view = match self.memo.responses.get(&key) {
+                Some(view) => Some(view.clone()),
+                None => {
+                    self.publish(answer);
+                    let predictor = look.predictor.as_ref();
+                    let found = respond(damage, episode, &inferred, opened, predictor, || {
+                        self.check()
+                    })?;
+                    if let Some(view) = &found {
+                        let keep = || Ok::<_, Stop>(view.clone());
+                        self.memo.responses.get_or_try_insert(key, keep)?;
+                    }
+                    found
+                }
+            };
+            responses.extend(view);
+        }
+        answer.responses = Arc::new(responses);
         Ok(())
     }
 }

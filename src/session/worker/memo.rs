@@ -12,6 +12,7 @@ use super::lru::Lru;
 use super::opened::Opened;
 use super::pictured::Pictured;
 use super::readings::{Readings, ReadingsKey};
+use super::response::ResponseKey;
 use super::spread::{Spread, SpreadKey};
 use crate::episode::{Episode, EpisodeSource, Layout, SourceError};
 use crate::measure::corruption::{Corruption, corrupt};
@@ -19,6 +20,7 @@ use crate::modality::Modality;
 use crate::model::trace::{Alphas, ExpertTrace, GaussianTrace};
 use crate::session::predict::{PredictError, Predictor};
 use crate::session::settings::{ControlEdit, Rollout};
+use crate::session::snapshot::response::ResponseView;
 
 /// Episodes and encodings kept.
 const EPISODES: usize = 8;
@@ -92,6 +94,8 @@ pub struct Memo {
     pub lattices: Lru<Sight, Lattice>,
     /// Samples of rollouts.
     pub spreads: Lru<SpreadKey, Spread>,
+    /// Responses to damage.
+    pub responses: Lru<ResponseKey, ResponseView>,
 }
 
 impl Default for Memo {
@@ -108,6 +112,7 @@ impl Default for Memo {
             readings: Lru::new(BELIEFS),
             lattices: Lru::new(FEW),
             spreads: Lru::new(FEW),
+            responses: Lru::new(DAMAGED),
         }
     }
 }
@@ -177,6 +182,7 @@ impl Memo {
         self.readings.forget(|key| of(&key.belief.sight));
         self.lattices.forget(of);
         self.spreads.forget(|key| of(&key.belief.sight));
+        self.responses.forget(|key| of(&key.belief.sight));
     }
 
     /// What the experts say of an episode: those whose input is damaged are asked again, the others are not.
