@@ -97,4 +97,25 @@ fn main() {
             apart.filter_all(&experts, &sets).expect("beliefs");
         },
     );
+
+    let beliefs = apart.filter(&experts, &sets[14]).expect("beliefs");
+    timed("transitions_48", "v-h-p, 48 beliefs: A of each", || {
+        apart.transitions(&beliefs).expect("matrices");
+    });
+    let known = &experts.controls[3..14];
+    timed("rollout_11", "v-h-p, 11 steps: the mean path and A", || {
+        apart.rollout(&beliefs, 3, known).expect("a rollout");
+    });
+    let noise = common::numbers(32 * 12 * 16, 5);
+    timed("samples_32x11", "v-h-p, 11 steps: 32 samples", || {
+        apart.sample(&beliefs, 3, known, &noise).expect("samples");
+    });
+    let windows = Observations {
+        beliefs: 48,
+        streams: vec![common::numbers(48 * apart.model().encoders[1].inputs(0), 1)],
+        controls: Vec::new(),
+    };
+    timed("encode_one_48", "v-h-p, 48 beliefs: haptic alone", || {
+        apart.encode_expert(&windows, 1).expect("Gaussians");
+    });
 }

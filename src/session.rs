@@ -97,7 +97,7 @@ struct Wanted {
 
 impl Session {
     /// Shows the first episode with the first model, and starts to compute.
-    pub fn new(source: Arc<dyn EpisodeSource>, models: Vec<Box<dyn Predictor>>) -> Self {
+    pub fn new(source: Arc<dyn EpisodeSource>, models: Vec<Arc<dyn Predictor>>) -> Self {
         let infos: Vec<_> = models.iter().map(|m| Arc::new(m.info().clone())).collect();
         let position_weights = models
             .iter()
