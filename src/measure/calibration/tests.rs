@@ -1,3 +1,5 @@
+use proptest::prelude::*;
+
 use super::*;
 use crate::measure::synthetic::{World, unexplained};
 
@@ -253,4 +255,30 @@ fn an_interval_that_rounds_to_the_claim_shows_its_decimals() {
         found.sentence,
         "claims 95 %, holds 94.3 % [93.9, 94.8] of 9540: overconfident"
     );
+}
+
+proptest! {
+    #[test]
+    fn whatever_comes_in_what_comes_out_is_finite(
+        rows in prop::collection::vec(prop::array::uniform5(prop_oneof![-2.0_f32..2.0, any::<f32>()]), 0..6),
+    ) {
+        let errors: Vec<Error2> = rows
+            .iter()
+            .map(|&[x, y, xx, xy, yy]| Error2 {
+                error_m: [x, y],
+                covariance: [xx, xy, yy],
+            })
+            .collect();
+        let horizon = horizon_nees(3, &errors);
+        prop_assert_eq!(horizon.is_some(), calibration(&errors).is_some());
+        if let Some(found) = calibration(&errors) {
+            prop_assert_eq!(found.n + found.skipped, errors.len());
+            let [x, y] = found.crps_cm;
+            for number in [found.area, found.sharpness_cm2, found.nll, x, y] {
+                prop_assert!(number.is_finite());
+            }
+            prop_assert!((0.0..=0.5 + 1e-9).contains(&found.area));
+            prop_assert!((found.pit.iter().sum::<f64>() - 1.0).abs() < 1e-9);
+        }
+    }
 }

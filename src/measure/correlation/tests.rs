@@ -1,3 +1,5 @@
+use proptest::prelude::*;
+
 use super::*;
 use crate::measure::calibration::horizon_nees;
 use crate::measure::synthetic::{Outcome, World};
@@ -139,4 +141,19 @@ fn what_cannot_be_compared_has_no_correlation() {
     );
     assert_eq!(found.beside_prior(f64::NAN, 1.0).with_prior, None);
     assert!(copies_inflation(0.0, 0.0, 2).is_nan() && copies_inflation(-1.0, 2.0, 2).is_nan());
+}
+
+proptest! {
+    #[test]
+    fn whatever_the_errors_a_correlation_is_one(
+        errors in prop::collection::vec(
+            prop::collection::vec(prop::array::uniform2(prop_oneof![-2.0_f32..2.0, any::<f32>()]), 4),
+            0..4,
+        ),
+    ) {
+        if let Some(found) = dependence(&errors) {
+            prop_assert!(found.pairs.iter().all(|pair| (-1.0..=1.0).contains(&pair.rho)));
+            prop_assert!(found.effective.is_finite() && found.inflation > 0.0);
+        }
+    }
 }
