@@ -176,6 +176,11 @@ impl Board {
         if let Some(filtered) = &filtered {
             sentences.push(say("the belief", &filtered.sentence));
         }
+        if let Some(bare) = mean_nees(&self.bare).filter(|_| filtered.is_some()) {
+            sentences.push(format!(
+                "without the probe's residual its mean NEES is {bare:.1} where 2 is right; R_p was fitted to take that up"
+            ));
+        }
         if let Some(predicted) = &predicted {
             let what = format!("the prediction {horizon} steps on");
             sentences.push(say(&what, &predicted.sentence));
