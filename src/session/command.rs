@@ -2,6 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::settings::ControlEdit;
+use super::snapshot::table::Column;
+use crate::measure::corruption::Corruption;
+use crate::measure::failure::Order;
+use crate::modality::Modality;
+
 /// How far a switch reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -24,6 +30,8 @@ pub enum Looping {
     /// Starts again at the first step.
     #[default]
     All,
+    /// Goes round the selected steps.
+    Selection,
 }
 
 /// One thing a user asks of the session.
@@ -47,6 +55,24 @@ pub enum Command {
     SelectEpisode(usize),
     /// Show this model of the list.
     SelectModel(usize),
+    /// Show this model of the list beside it.
+    CompareWith(usize),
+    /// Go so many places on in the queue of failures.
+    Failure(i64),
+    /// Rank failures by the next quantity.
+    CycleFailureOrder,
+    /// Rank failures by this.
+    RankBy(Order),
+    /// Sort the episodes by a column; the same again turns the order round.
+    SortBy(Column),
+    /// List only episodes whose name or split contains this.
+    Filter(String),
+    /// Go so many events on: contact onsets and marks.
+    Event(i64),
+    /// Mark the step under the cursor, or take its mark away.
+    ToggleMark,
+    /// Begin a selection of steps at the cursor, or end it there; a third time forgets it.
+    Select,
     /// Switch an expert on or off within the scope: a position in the model's list, the prior last.
     ToggleExpert(usize),
     /// Only this expert, within the scope; the prior stays as it is.
@@ -69,6 +95,23 @@ pub enum Command {
     },
     /// Next scope: episode, from here on, this frame.
     CycleScope,
+    /// Exactly these experts as trained, the others off, in the whole episode: the model's list, the prior last.
+    UseSet(Vec<bool>),
+    /// Damage what a modality's experts see, within the corruption's steps; none mends it.
+    Corrupt {
+        /// Whose input.
+        modality: Modality,
+        /// How.
+        corruption: Option<Corruption>,
+    },
+    /// Predict with other controls than the recorded ones; none takes the recorded ones again.
+    EditControls(Option<ControlEdit>),
+    /// Show the mean path, or a sample.
+    ToggleSamples,
+    /// So many samples.
+    SetSamples(usize),
+    /// Seed of the samples' and the corruptions' noise.
+    SetSeed(u64),
     /// Predict open loop from the step under the cursor.
     PredictHere,
     /// c: so many images are seen before the rollout.
@@ -81,7 +124,7 @@ pub enum Command {
     Horizon(i64),
     /// Faster (positive) or slower (negative), by factors of two.
     Speed(i64),
-    /// Loop off or all.
+    /// Loop off, all, or the selection.
     CycleLoop,
     /// Take back the last change of switches, scope, context, horizon or start.
     Undo,

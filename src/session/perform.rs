@@ -76,7 +76,7 @@ impl Session {
             Command::CycleLoop => {
                 let (looping, words) = match self.playback.looping {
                     Looping::Off => (Looping::All, "loops"),
-                    Looping::All => (Looping::Off, "stops at the end"),
+                    Looping::All | Looping::Selection => (Looping::Off, "stops at the end"),
                 };
                 self.playback.looping = looping;
                 self.inform(words.to_owned());
@@ -90,6 +90,7 @@ impl Session {
                 self.travel(after, "redo");
             }
             Command::Restore(text) => self.restore(&text),
+            _ => {}
         }
     }
 

@@ -1,7 +1,13 @@
-//! What undo takes back: switches, scope, context and horizon, with their history.
+//! What undo takes back: switches, scope, context, horizon, damaged inputs, edited controls and sampling.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 use super::command::Scope;
 use super::switches::Switches;
+use crate::measure::corruption::Corruption;
+use crate::modality::Modality;
 
 /// How many changes can be taken back.
 const HISTORY: usize = 256;
@@ -17,6 +23,79 @@ pub struct Settings {
     pub context: usize,
     /// h, the images predicted.
     pub horizon: usize,
+    /// What is wrong with each modality's input.
+    pub corruptions: BTreeMap<Modality, Corruption>,
+    /// What the rollout does instead of the recorded controls.
+    pub controls: Option<ControlEdit>,
+    /// Mean path or samples.
+    pub sampling: Sampling,
+}
+
+/// Whether a sample is shown instead of the mean path, and how many there are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Sampling {
+    /// Whether frames show a sample.
+    pub shown: bool,
+    /// How many samples of the rollout there are.
+    pub count: usize,
+    /// Seed of their noise, and of the corruptions'.
+    pub seed: u64,
+}
+
+impl Default for Sampling {
+    fn default() -> Self {
+        Self {
+            shown: false,
+            count: 32,
+            seed: 0,
+        }
+    }
+}
+
+/// Other controls than the recorded ones from a step on: turned, scaled, mirrored, or none at all.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ControlEdit {
+    /// The first step whose control is another one.
+    pub from: usize,
+    /// Turned by so many degrees from x towards y.
+    pub rotate_deg: f32,
+    /// Times as fast; 0 stops.
+    pub scale: f32,
+    /// Whether left and right of the path are exchanged: y becomes −y before it is turned.
+    pub mirror: bool,
+}
+
+impl ControlEdit {
+    /// The recorded controls from a step on.
+    pub fn from(step: usize) -> Self {
+        Self {
+            from: step,
+            rotate_deg: 0.0,
+            scale: 1.0,
+            mirror: false,
+        }
+    }
+
+    /// Whether it leaves every control as it was.
+    pub fn is_identity(&self) -> bool {
+        self.rotate_deg == 0.0 && !self.mirror && (self.scale - 1.0).abs() < f32::EPSILON
+    }
+
+    /// The controls of the steps `first_step..`, edited: row i acts from step `first_step + i` on.
+    pub fn apply(&self, first_step: usize, controls: &[[f32; 2]]) -> Vec<[f32; 2]> {
+        let (sin, cos) = self.rotate_deg.to_radians().sin_cos();
+        let edited = |(i, &[x, y]): (usize, &[f32; 2])| {
+            if first_step + i < self.from || self.is_identity() {
+                return [x, y];
+            }
+            let y = if self.mirror { -y } else { y };
+            [
+                self.scale * (cos * x - sin * y),
+                self.scale * (sin * x + cos * y),
+            ]
+        };
+        controls.iter().enumerate().map(edited).collect()
+    }
 }
 
 impl Default for Settings {
@@ -27,6 +106,9 @@ impl Default for Settings {
             scope: Scope::Episode,
             context: 4,
             horizon: 11,
+            corruptions: BTreeMap::new(),
+            controls: None,
+            sampling: Sampling::default(),
         }
     }
 }
@@ -103,6 +185,27 @@ mod tests {
         assert_eq!(rollout(1, 0), (0, 0));
         assert_eq!(rollout(0, 0), (0, 0));
         assert_eq!(rollout(16, 6), (6, 9));
+    }
+
+    #[test]
+    fn edited_controls_turn_scale_mirror_and_stop_from_their_step_on() {
+        let recorded = [[1.0, 0.0], [0.0, 2.0], [1.0, 1.0]];
+        let edit = |edit: ControlEdit| edit.apply(4, &recorded);
+        let from = ControlEdit::from(5);
+        assert_eq!(edit(from), recorded);
+        let stop = edit(ControlEdit { scale: 0.0, ..from });
+        assert_eq!(stop, [[1.0, 0.0], [0.0, 0.0], [0.0, 0.0]]);
+        let mirror = edit(ControlEdit {
+            mirror: true,
+            ..from
+        });
+        assert_eq!(mirror, [[1.0, 0.0], [0.0, -2.0], [1.0, -1.0]]);
+        let turned = edit(ControlEdit {
+            rotate_deg: 90.0,
+            scale: 0.5,
+            ..from
+        });
+        assert!((turned[1][0] + 1.0).abs() < 1e-6 && turned[1][1].abs() < 1e-6);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Session;
 use super::badge::badge;
-use super::settings::{Rollout, Settings};
+use super::settings::{Rollout, Sampling, Settings};
 use super::snapshot::{
     Badge, ErrorOf, Estimate, ExpertView, FrameRow, LatentView, Message, ModelInfo, PositionView,
     SignedFrame, Snapshot,
@@ -157,6 +157,18 @@ pub(super) fn empty(source: &dyn EpisodeSource, models: &[Arc<ModelInfo>]) -> Sn
         position: None,
         belief: None,
         psnr_db: Arc::default(),
+        fusion: None,
+        series: None,
+        lattice: None,
+        spread: None,
+        board: None,
+        table: Arc::default(),
+        other: None,
+        events: Arc::default(),
+        corruptions: Vec::new(),
+        control_edit: None,
+        sampling: Sampling::default(),
+        selection: None,
         message: None,
         busy: false,
         state: String::new(),
@@ -192,6 +204,7 @@ fn frame_row(answer: &Answer, cursor: usize) -> FrameRow {
         prediction: cell.prediction.clone(),
         error: compared.and_then(|frame| signed_frame(frame, &cell.truth)),
         error_of,
+        input: None,
     }
 }
 
@@ -219,5 +232,6 @@ fn position_view(answer: &Answer, cursor: usize) -> Option<PositionView> {
         prediction_error_m: error_m(&prediction),
         belief,
         prediction,
+        recorded_controls: Arc::default(),
     })
 }

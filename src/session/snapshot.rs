@@ -1,12 +1,27 @@
 //! Everything a face may show, computed: owned, cheap to clone (the large parts are shared), serialisable.
 
+pub mod board;
+pub mod lattice;
+pub mod other;
+pub mod reading;
+pub mod spread;
+pub mod table;
+
 use std::sync::Arc;
 
 use serde::Serialize;
 
 use super::command::{Looping, Scope};
+use super::settings::{ControlEdit, Sampling};
 use crate::episode::{Frame, PlanarPose, Split};
-use crate::modality::{Expert, ExpertSet};
+use crate::measure::corruption::Corruption;
+use crate::modality::{Expert, ExpertSet, Modality};
+use board::BoardView;
+use lattice::LatticeView;
+use other::OtherView;
+use reading::{FusionView, SeriesView};
+use spread::SpreadView;
+use table::TableView;
 
 /// The state of a session at one moment.
 #[derive(Clone, Debug, Serialize)]
@@ -53,6 +68,30 @@ pub struct Snapshot {
     pub belief: Option<LatentView>,
     /// Per step: PSNR in dB of the belief's and of the prediction's frame, once computed.
     pub psnr_db: Arc<Vec<StepPsnr>>,
+    /// What the fusion at the cursor is made of; none before the first belief and without a product.
+    pub fusion: Option<Arc<FusionView>>,
+    /// The same over the episode; none until computed.
+    pub series: Option<Arc<SeriesView>>,
+    /// Every set of experts at the cursor; none until computed, and where nobody asked for it.
+    pub lattice: Option<Arc<LatticeView>>,
+    /// How sure the rollout is, in three ways; none until computed, and where nobody asked for it.
+    pub spread: Option<Arc<SpreadView>>,
+    /// Consistency over a split; none where nobody asked for it.
+    pub board: Option<Arc<BoardView>>,
+    /// Every episode of the dataset.
+    pub table: Arc<TableView>,
+    /// The second model; none where there is only one.
+    pub other: Option<Arc<OtherView>>,
+    /// Contact onsets and marks, in order.
+    pub events: Arc<Vec<Event>>,
+    /// Damaged inputs.
+    pub corruptions: Vec<(Modality, Corruption)>,
+    /// What the rollout does instead of the recorded controls.
+    pub control_edit: Option<ControlEdit>,
+    /// Mean path or samples.
+    pub sampling: Sampling,
+    /// The selected steps, first and last, from 0; while the second is not chosen it is the cursor.
+    pub selection: Option<(usize, usize)>,
     /// The last thing to tell the user.
     pub message: Option<Message>,
     /// Whether something asked for is still being computed.
@@ -155,6 +194,8 @@ pub struct FrameRow {
     pub error: Option<Arc<SignedFrame>>,
     /// What `error` is of.
     pub error_of: ErrorOf,
+    /// What the model sees instead of `truth`, where vision is damaged at this step.
+    pub input: Option<Arc<Frame>>,
 }
 
 /// What a signed error compares with the truth.
@@ -211,6 +252,8 @@ pub struct PositionView {
     pub belief: Arc<Vec<Option<Estimate>>>,
     /// Estimate from the rollout at each step; none outside the horizon.
     pub prediction: Arc<Vec<Option<Estimate>>>,
+    /// The rollout under the recorded controls, where they are edited; else empty.
+    pub recorded_controls: Arc<Vec<Option<Estimate>>>,
     /// Distance of the belief's estimate at the cursor from the truth, in metres.
     pub belief_error_m: Option<f32>,
     /// Distance of the prediction's estimate at the cursor from the truth, in metres.
@@ -226,6 +269,25 @@ pub struct Estimate {
     pub y: f32,
     /// Covariance as xx, xy, yy in square metres.
     pub covariance: [f32; 3],
+}
+
+/// A step that stands out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Event {
+    /// Step, from 0.
+    pub step: usize,
+    /// Why.
+    pub kind: EventKind,
+}
+
+/// Why a step stands out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum EventKind {
+    /// The contact force rises here.
+    Contact,
+    /// The user marked it.
+    Mark,
 }
 
 /// Something to tell the user.

@@ -1,13 +1,16 @@
 //! A made-up but plausible moment of a session: a plate that is pushed for 16 steps, seen by four experts.
 
+mod bench;
+
 use std::sync::Arc;
 
 use crate::episode::{Frame, PlanarPose, Split};
 use crate::modality::{Expert, ExpertSet};
 use crate::session::command::{Looping, Scope};
+use crate::session::settings::Sampling;
 use crate::session::snapshot::{
-    Badge, EpisodeView, ErrorOf, Estimate, ExpertView, FrameRow, LatentView, ModelInfo,
-    PositionView, SignedFrame, Snapshot, StepPsnr, StripCell,
+    Badge, EpisodeView, ErrorOf, Estimate, Event, EventKind, ExpertView, FrameRow, LatentView,
+    ModelInfo, PositionView, SignedFrame, Snapshot, StepPsnr, StripCell,
 };
 
 const DIMS: usize = 16;
@@ -127,6 +130,7 @@ fn position(cursor: usize, steps: usize) -> PositionView {
                 .map(|t| predicted(t).map(|t| estimate(t, drift(t))))
                 .collect(),
         ),
+        recorded_controls: Arc::default(),
         belief_error_m: Some(0.004),
         prediction_error_m: predicted(cursor).map(|_| 0.012),
     }
@@ -203,6 +207,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
             },
             prediction: prediction.map(Arc::new),
             error: (cursor > 0).then(|| Arc::new(error)),
+            input: None,
         },
         strip: Arc::new(strip.collect()),
         position: Some(position(cursor, steps)),
@@ -218,6 +223,27 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
                 })
                 .collect(),
         ),
+        fusion: bench::fusion(cursor),
+        series: Some(bench::series(steps)),
+        lattice: Some(bench::lattice(cursor)),
+        spread: Some(bench::spread(cursor, steps)),
+        board: Some(bench::board()),
+        table: bench::table(steps),
+        other: None,
+        events: Arc::new(vec![
+            Event {
+                step: 4.min(steps - 1),
+                kind: EventKind::Contact,
+            },
+            Event {
+                step: 7.min(steps - 1),
+                kind: EventKind::Mark,
+            },
+        ]),
+        corruptions: Vec::new(),
+        control_edit: None,
+        sampling: Sampling::default(),
+        selection: None,
         message: None,
         busy: false,
         state: "v=1;model=v-h-p;step=9".to_owned(),
