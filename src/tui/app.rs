@@ -4,8 +4,9 @@ use ratatui::layout::{Position, Rect, Size};
 
 use super::axis::Axis;
 use super::experts::expert_at;
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::help;
+use super::view::Pane;
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::input::{Action, Input};
@@ -95,23 +96,15 @@ impl App {
                 let next = face.help.map_or(0, |page| page + 1);
                 face.help = (next < help::pages(self.size)).then_some(next);
             }
-            FaceCommand::FocusNext => face.focus = face.focus.turned(1),
-            FaceCommand::FocusPrevious => face.focus = face.focus.turned(-1),
+            FaceCommand::FocusNext => face.focus = face.focus.turned(face.view, 1),
+            FaceCommand::FocusPrevious => face.focus = face.focus.turned(face.view, -1),
             FaceCommand::Zoom => face.zoomed = !face.zoomed,
             FaceCommand::Back => {
                 if face.help.take().is_none() {
                     face.zoomed = false;
                 }
             }
-            FaceCommand::NextView => {
-                let last = face.zoomed && face.focus.turned(1) == Focus::default();
-                face.focus = if face.zoomed {
-                    face.focus.turned(1)
-                } else {
-                    Focus::default()
-                };
-                face.zoomed = !last;
-            }
+            FaceCommand::NextView => face.open(face.view.next()),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -130,33 +123,33 @@ impl App {
         }
         let snapshot = self.session.snapshot();
         let screen = Rect::new(0, 0, self.size.width, self.size.height);
-        let panes = super::panes(screen, &snapshot, &self.face);
+        let layout = super::layout(screen, &snapshot, &self.face);
+        let timeline = layout.get(Pane::Timeline);
         match pointer {
             Pointer::Wheel(by) => self.session.apply(Command::Step(by)),
             Pointer::Release => self.seeking = false,
-            Pointer::Drag if self.seeking => self.seek(panes.timeline, at, &snapshot),
+            Pointer::Drag if self.seeking => self.seek(timeline, at, &snapshot),
             Pointer::Drag => {}
-            Pointer::Press if panes.timeline.contains(at) => {
-                self.seeking = true;
-                self.face.focus = Focus::Timeline;
-                self.seek(panes.timeline, at, &snapshot);
-            }
-            Pointer::Press if panes.experts.contains(at) => {
-                self.face.focus = Focus::Experts;
-                if let Some(expert) = expert_at(at.y - panes.experts.y, snapshot.experts.len()) {
-                    self.input.focus_expert(expert);
-                    self.face.expert = expert;
-                    self.session.apply(Command::ToggleExpert(expert));
-                }
-            }
             Pointer::Press => {
-                let others = [
-                    (panes.frames, Focus::Frames),
-                    (panes.latents, Focus::Latents),
-                    (panes.position, Focus::Position),
-                ];
-                if let Some((_, focus)) = others.into_iter().find(|(pane, _)| pane.contains(at)) {
-                    self.face.focus = focus;
+                let Some((pane, rect)) = layout.at(at) else {
+                    return;
+                };
+                if self.face.view.panes().contains(&pane) {
+                    self.face.focus = pane;
+                }
+                match pane {
+                    Pane::Timeline => {
+                        self.seeking = true;
+                        self.seek(rect, at, &snapshot);
+                    }
+                    Pane::Experts => {
+                        if let Some(expert) = expert_at(at.y - rect.y, snapshot.experts.len()) {
+                            self.input.focus_expert(expert);
+                            self.face.expert = expert;
+                            self.session.apply(Command::ToggleExpert(expert));
+                        }
+                    }
+                    _ => {}
                 }
             }
         }

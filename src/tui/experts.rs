@@ -12,10 +12,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::layout::LEFT;
 use super::paint::{bar, right, text};
 use super::theme::{dim, strong};
+use super::view::Pane;
 use crate::modality::Expert;
 use crate::session::snapshot::{ExpertView, LatentView, Snapshot};
 
@@ -29,7 +30,7 @@ const SHARE_END: u16 = 5;
 
 /// Draws the table.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
-    let focused = face.is_focused(Focus::Experts);
+    let focused = face.is_focused(Pane::Experts);
     let title = if focused { "▸ experts" } else { "experts" };
     text(buf, pane, 0, 0, title, strong());
     text(buf, pane, MARK, 0, "α", dim());

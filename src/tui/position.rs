@@ -20,19 +20,24 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::braille::{Canvas, Stroke};
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::paint::{below_title, put, text, title};
 use super::plane::{Extent, GUTTER, Plane};
 use super::theme::{PREDICTION, dim, strong};
+use super::view::{Pane, View};
 use crate::measure::ellipse::{ONE_SIGMA_MASS, SIGMAS_OF_95_PERCENT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 
-/// Draws the plane with its legend.
+/// Draws the plane with its legend; in the view of its own the large one.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if pane.is_empty() {
         return;
     }
-    let focused = face.is_focused(Focus::Position);
+    if face.view == View::Position {
+        table::draw(buf, pane, snapshot, face);
+        return;
+    }
+    let focused = face.is_focused(Pane::Position);
     let Some(position) = &snapshot.position else {
         title(buf, pane, "position", "", focused);
         let below = below_title(pane);

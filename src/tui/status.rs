@@ -1,7 +1,7 @@
 //! The first and the last line: what is open, and what there is to say.
 //!
 //! ```text
-//! sample_data  v-h-p              computing…  episode 3/24  push-00003 test  scope episode
+//! overview  sample_data  v-h-p    computing…  episode 3/24  push-00003 test  scope episode
 //! …
 //! ! untrained switches: vision alone was never trained without the prior
 //! ```
@@ -18,7 +18,18 @@ use crate::session::snapshot::{Badge, Snapshot};
 
 /// Draws the first line.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
-    let mut at = text(buf, pane, 0, 0, &snapshot.dataset, strong());
+    let mut at = text(buf, pane, 0, 0, face.view.name(), strong());
+    if face.zoomed {
+        at = text(
+            buf,
+            pane,
+            at + 1,
+            0,
+            &format!("▸ {}", face.focus.name()),
+            Style::new(),
+        );
+    }
+    at = text(buf, pane, at + 2, 0, &snapshot.dataset, dim());
     if let Some(model) = snapshot.models.get(snapshot.model) {
         at = text(buf, pane, at + 2, 0, &model.name, strong());
         if snapshot.models.len() > 1 {

@@ -19,6 +19,7 @@ use super::image::{ERROR_RANGE, Raster};
 use super::paint::{put, text, width};
 use super::predict::edited;
 use super::theme::{PREDICTION, dim, strong};
+use super::view::{Pane, View};
 use crate::episode::Frame;
 use crate::session::snapshot::{Snapshot, StripCell};
 
@@ -101,14 +102,19 @@ fn steps(snapshot: &Snapshot) -> usize {
     episode.map_or(0, |episode| episode.secs.len())
 }
 
-/// Draws truth, belief and prediction.
+/// Draws truth, belief and prediction; in the predict view the error, too.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    if face.view == View::Predict {
+        with_error(buf, pane, snapshot, face);
+        return;
+    }
     let grid = Grid::of((pane.width, pane.height), steps(snapshot), THREE, 1);
     grid.draw(buf, pane, snapshot, face, false);
 }
 
 /// Draws the same with the error; where controls are edited, the last row says how.
-pub fn with_error(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+fn with_error(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Strip);
     let said = u16::from(snapshot.control_edit.is_some() && pane.height > 4);
     let frames = Rect {
         height: pane.height - said,

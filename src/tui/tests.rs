@@ -16,10 +16,11 @@ use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
 use super::app::{App, Flow, Pointer};
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::fixture;
 use super::print::to_text;
 use super::theme::Depth;
+use super::view::{Pane, View};
 use crate::session::Session;
 use crate::session::fake::{FakePredictor, FakeSource};
 use crate::session::keymap::bindings;
@@ -155,14 +156,15 @@ fn a_terminal_too_small_says_so() {
 fn the_mouse_seeks_and_switches() {
     let mut app = pressed("", SMALL);
     let face = Face::default();
-    let panes = super::panes(
+    let layout = super::layout(
         ratatui::layout::Rect::new(0, 0, SMALL.0, SMALL.1),
         &app.session.snapshot(),
         &face,
     );
+    let (timeline, experts) = (layout.get(Pane::Timeline), layout.get(Pane::Experts));
     app.point(
         Pointer::Press,
-        Position::new(panes.timeline.x + 7 + 10, panes.timeline.y + 2),
+        Position::new(timeline.x + 7 + 10, timeline.y + 2),
     );
     assert_eq!(app.session.snapshot().cursor, 5);
     app.point(Pointer::Drag, Position::new(79, 0));
@@ -171,10 +173,7 @@ fn the_mouse_seeks_and_switches() {
     app.point(Pointer::Drag, Position::new(0, 0));
     app.point(Pointer::Wheel(-1), Position::new(0, 0));
     assert_eq!(app.session.snapshot().cursor, 14);
-    app.point(
-        Pointer::Press,
-        Position::new(panes.experts.x + 4, panes.experts.y + 2),
-    );
+    app.point(Pointer::Press, Position::new(experts.x + 4, experts.y + 2));
     settle(&mut app);
     let alphas: Vec<f32> = app
         .session
@@ -184,7 +183,7 @@ fn the_mouse_seeks_and_switches() {
         .map(|view| view.alpha)
         .collect();
     assert_eq!(alphas, [1.0, 0.0, 1.0, 1.0]);
-    assert_eq!((app.face.focus, app.face.expert), (Focus::Experts, 1));
+    assert_eq!((app.face.focus, app.face.expert), (Pane::Experts, 1));
 }
 
 #[test]
@@ -199,14 +198,24 @@ fn the_state_string_goes_to_the_clipboard() {
 #[test]
 fn views_come_round() {
     let mut app = pressed("", SMALL);
-    let mut seen = Vec::new();
-    for _ in 0..6 {
+    app.press(&Key::of_char('v'));
+    for view in [
+        View::Fuse,
+        View::Predict,
+        View::Position,
+        View::Consistency,
+        View::Lattice,
+        View::Overview,
+    ] {
+        assert_eq!(app.face.view, view);
+        assert_eq!(app.face.focus, view.panes()[0]);
+        let shown = to_text(&screen(&app.session.snapshot(), &app.face, SMALL), false);
+        assert!(shown.trim_start().starts_with(view.name()), "{shown}");
+        app.press(&Key::of_spelling("<enter>").unwrap());
+        assert!(app.face.zoomed);
         app.press(&Key::of_char('v'));
-        seen.push(app.face.zoomed.then_some(app.face.focus));
+        assert!(!app.face.zoomed);
     }
-    let mut all: Vec<_> = Focus::ALL.into_iter().map(Some).collect();
-    all.push(None);
-    assert_eq!(seen, all);
 }
 
 #[test]
@@ -225,7 +234,9 @@ fn nothing_panics_at_any_size() {
     for (i, snapshot) in snapshots.iter().enumerate() {
         let widths = (1..=200_u16).step_by(9);
         for (width, height) in widths.flat_map(|w| (1..=60_u16).step_by(4).map(move |h| (w, h))) {
-            face.focus = Focus::ALL[usize::from(width + height) % 5];
+            face.open(View::ALL[usize::from(width / 9 + height / 4) % View::ALL.len()]);
+            let panes = face.view.panes();
+            face.focus = panes[usize::from(width + height) % panes.len()];
             face.zoomed = (width + i as u16).is_multiple_of(3);
             face.help = (width % 5 == 0).then_some(usize::from(height % 3));
             face.depth = if height % 2 == 0 {

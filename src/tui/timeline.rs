@@ -15,11 +15,12 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::axis::{Axis, LABELS};
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::layout::rows;
 use super::paint::{column, put, right, text};
 use super::stack::stack;
 use super::theme::{PREDICTION, dim, strong};
+use super::view::Pane;
 use crate::modality::Expert;
 use crate::session::command::Looping;
 use crate::session::snapshot::{Snapshot, StepPsnr};
@@ -99,7 +100,7 @@ fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .episode
         .as_ref()
         .map_or(0, |episode| episode.secs.len());
-    let mark = if face.is_focused(Focus::Timeline) {
+    let mark = if face.is_focused(Pane::Timeline) {
         "▸ step "
     } else {
         "step "

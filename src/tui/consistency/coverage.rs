@@ -19,6 +19,7 @@ use super::super::paint::{below_title, text, title};
 use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{PREDICTION, dim, strong};
+use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::board;
 use crate::measure::calibration::{Calibration, CoveragePoint};
@@ -28,7 +29,8 @@ use crate::session::snapshot::Snapshot;
 const EVERY: usize = 4;
 
 /// Draws the curves.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Coverage);
     let Ok(board) = board(snapshot) else { return };
     if pane.is_empty() {
         return;

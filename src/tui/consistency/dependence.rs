@@ -16,6 +16,7 @@ use ratatui::style::Style;
 use super::super::face::Face;
 use super::super::paint::{below_title, right, text, title};
 use super::super::theme::{dim, strong};
+use super::super::view::Pane;
 use super::super::words::sentence;
 use super::board;
 use crate::modality::Expert;
@@ -26,7 +27,8 @@ use crate::session::snapshot::board::BoardView;
 const CELL: u16 = 6;
 
 /// Draws matrix, readings and what they mean.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Dependence);
     let Ok(board) = board(snapshot) else { return };
     if pane.is_empty() {
         return;

@@ -19,6 +19,7 @@ use super::super::paint::{below_title, text, title};
 use super::super::plot::Plot;
 use super::super::scale::{Scale, round_up};
 use super::super::theme::{PREDICTION, dim, strong};
+use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::board;
 use crate::measure::calibration::HorizonNees;
@@ -30,7 +31,8 @@ const HONEST: f32 = 2.0;
 const LARGE: f32 = 12.0;
 
 /// Draws the plot.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Horizons);
     let Ok(board) = board(snapshot) else { return };
     if pane.is_empty() {
         return;

@@ -7,7 +7,8 @@ use ratatui::style::Style;
 use super::super::face::Face;
 use super::super::paint::{below_title, right, text, title};
 use super::super::theme::{PREDICTION, dim, strong};
-use super::super::words::{sentence, wrap};
+use super::super::view::Pane;
+use super::super::words::sentence;
 use super::board;
 use crate::measure::calibration::{Calibration, CoveragePoint};
 use crate::session::snapshot::Snapshot;
@@ -16,17 +17,8 @@ use crate::session::snapshot::Snapshot;
 const FILTERED: u16 = 22;
 const PREDICTED: u16 = 33;
 
-/// Rows that the sentences take on so many columns, their title among them.
-pub fn rows(snapshot: &Snapshot, columns: u16) -> u16 {
-    let lines = |line: &String| wrap(line, columns).len();
-    match board(snapshot) {
-        Ok(board) => 1 + board.sentences.iter().map(lines).sum::<usize>().max(1) as u16,
-        Err(why) => 1 + lines(&why) as u16,
-    }
-}
-
 /// Draws the sentences, the most important first.
-pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, _face: &Face) {
+pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if pane.is_empty() {
         return;
     }
@@ -35,7 +27,7 @@ pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, _face: &Face
     let note = read.as_ref().map_or_else(|_| String::new(), |board| {
         format!("{}, {}/{} episodes", board.split, board.episodes, board.total)
     });
-    title(buf, pane, "consistency", &note, false);
+    title(buf, pane, "consistency", &note, face.is_focused(Pane::Verdict));
     let board = match read {
         Ok(board) => board,
         Err(why) => {
@@ -56,7 +48,7 @@ pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, _face: &Face
 /// Draws the numbers.
 pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let Ok(board) = board(snapshot) else { return };
-    title(buf, pane, "numbers", "", false);
+    title(buf, pane, "numbers", "", face.is_focused(Pane::Numbers));
     let inner = below_title(pane);
     let ink = face.depth.ink(PREDICTION);
     right(buf, inner, FILTERED, 0, "● filtered", strong());

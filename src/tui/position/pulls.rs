@@ -19,6 +19,7 @@ use super::super::face::Face;
 use super::super::paint::{below_title, right, text, title};
 use super::super::predict::edited;
 use super::super::theme::{dim, strong};
+use super::super::view::Pane;
 use super::super::words::sentence;
 use super::at_step;
 use crate::session::snapshot::Snapshot;
@@ -31,7 +32,8 @@ const WITHOUT: u16 = 33;
 const NARROWEST: u16 = 20;
 
 /// Draws the table and what is off.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Pulls);
     if pane.is_empty() || pane.width < NARROWEST {
         return;
     }

@@ -19,6 +19,7 @@ use super::super::face::Face;
 use super::super::paint::{below_title, put, text, title};
 use super::super::plane::{Extent, Plane};
 use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
 use super::{at_step, dots, ellipses, marks, masses, off, paths, window};
@@ -29,7 +30,8 @@ use crate::session::snapshot::{PositionView, Snapshot};
 const LEGEND: u16 = 4;
 
 /// Draws the plane with its legend.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Position);
     if pane.is_empty() {
         return;
     }

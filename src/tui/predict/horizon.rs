@@ -18,6 +18,7 @@ use super::super::paint::{below_title, text, title};
 use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::{ahead, cursor_ahead, labels};
 use crate::session::snapshot::{Snapshot, StepPsnr};
@@ -40,7 +41,8 @@ impl Line<'_> {
 }
 
 /// Draws the plot with its legend.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Quality);
     if pane.is_empty() {
         return;
     }

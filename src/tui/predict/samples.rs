@@ -15,13 +15,15 @@ use super::super::face::Face;
 use super::super::image::Raster;
 use super::super::paint::{below_title, text, title};
 use super::super::theme::{dim, strong};
+use super::super::view::Pane;
 use super::super::words::{sentence, wrap};
 use super::{cursor_ahead, heat};
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::spread::SampleFrames;
 
 /// Draws the three images with their sentences.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Samples);
     if pane.is_empty() {
         return;
     }

@@ -20,6 +20,7 @@ use super::super::paint::{below_title, text, title};
 use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{PREDICTION, dim, strong};
+use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::{cursor_ahead, labels};
 use crate::session::snapshot::Snapshot;
@@ -40,7 +41,8 @@ fn sigmas(spread: &SpreadView) -> (bool, Vec<[f32; 3]>) {
 }
 
 /// Draws the plot with its legend.
-pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Spread);
     if pane.is_empty() {
         return;
     }

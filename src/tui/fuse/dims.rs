@@ -8,13 +8,13 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use super::axis::LABELS;
-use super::face::Face;
-use super::paint::{right, text};
-use super::stack::stack;
-use super::theme::dim;
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
+use crate::tui::axis::LABELS;
+use crate::tui::face::Face;
+use crate::tui::paint::{right, text};
+use crate::tui::stack::stack;
+use crate::tui::theme::dim;
 
 /// Draws the stacks, with the dimensions' numbers below them where there is room.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {

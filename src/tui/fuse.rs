@@ -1,0 +1,6 @@
+//! The panes of the fuse view.
+
+pub mod dims;
+pub mod divergence;
+pub mod pairs;
+pub mod series;
