@@ -51,6 +51,8 @@ mod words;
 #[cfg(test)]
 mod fixture;
 #[cfg(test)]
+mod dump;
+#[cfg(test)]
 mod tests;
 
 use ratatui::Frame;

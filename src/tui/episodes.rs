@@ -5,7 +5,7 @@
 //!    # id          split steps error        RMSE▼  dist  gain  NEES confl  esc  !
 //!    1 push-00000  test     16 ▁▂▃▄▅▆▇█▇▆    7.1   1.2     –   3.1  44.0    9  ·
 //! ▸  3 push-00002  test     16 ▁▁▁▂▂▃▃▄▄▄    5.0   0.9     –   1.1  31.2    –  ·
-//! scored 20/24  failures by error, 3rd of 20          ⏎ open  / filter  1…9 sort  o order  Esc
+//! scored 20/24  failures by error: 3 of 20               ⏎ open  / filter  < > sort  o order
 //! ```
 
 pub mod list;
@@ -45,9 +45,9 @@ impl Places {
         let id = ID + (spare / 2).min(20);
         let spark_columns = SPARK + (spare - (id - ID)).min(32);
         // Mark and number, name, split, steps.
-        let spark = 6 + id + 1 + 5 + 6 + 1;
+        let spark = 7 + id + 6 + 6 + 2;
         let mut at = spark + spark_columns;
-        let ends = [6, 6, 6, 6, 6, 5, 3].map(|step| {
+        let ends = [6, 5, 5, 6, 6, 5, 2].map(|step| {
             at += step;
             at
         });
@@ -63,11 +63,11 @@ impl Places {
 /// The header of each column with the column it sorts by, where it does.
 fn headers(places: &Places) -> [(u16, &'static str, Option<Column>); 12] {
     let e = places.ends;
-    let steps = places.spark - 1;
+    let steps = places.spark - 2;
     [
         (5, "#", Some(Column::Index)),
-        (8, "id", Some(Column::Id)),
-        (6 + places.id + 6, "split", None),
+        (9, "id", Some(Column::Id)),
+        (7 + places.id + 6, "split", None),
         (steps, "steps", Some(Column::Steps)),
         (places.spark + 5, "error", None),
         (e[0], "RMSE", Some(Column::Rmse)),
@@ -117,7 +117,8 @@ pub fn draw(buf: &mut Buffer, screen: Rect, snapshot: &Snapshot, face: &Face, li
             text(buf, line, 0, 0, "▸", strong());
         }
         if place == selected {
-            buf.set_style(line.intersection(buf.area), Style::new().add_modifier(Modifier::REVERSED));
+            // Dim and coloured cells would make patches of a reversed line.
+            buf.set_style(line.intersection(buf.area), Style::reset().add_modifier(Modifier::REVERSED));
         }
     }
     if table.shown.is_empty() {
@@ -166,7 +167,7 @@ fn foot(buf: &mut Buffer, pane: Rect, table: &TableView) {
     );
     let order = format!("failures by {}: {place}", table.order.name());
     let at = text(buf, pane, at + 2, row, &order, Style::new());
-    let keys = "⏎ open  / filter  < > sort  o order  Esc";
+    let keys = "⏎ open  / filter  < > sort  o order";
     if at + 2 + width(keys) <= pane.width {
         right(buf, pane, pane.width, row, keys, dim());
     }
@@ -175,16 +176,16 @@ fn foot(buf: &mut Buffer, pane: Rect, table: &TableView) {
 fn episode(buf: &mut Buffer, line: Rect, (index, row): (usize, &EpisodeRow), places: &Places, face: &Face) {
     right(buf, line, 5, 0, &(index + 1).to_string(), dim());
     let name = Rect {
-        width: line.width.min(6 + places.id),
+        width: line.width.min(7 + places.id),
         ..line
     };
-    text(buf, name, 6, 0, &row.id, Style::new());
+    text(buf, name, 7, 0, &row.id, Style::new());
     let split = row.split.map_or("–", crate::episode::Split::name);
-    right(buf, line, 6 + places.id + 6, 0, split, dim());
+    right(buf, line, 7 + places.id + 6, 0, split, dim());
     let Some(score) = &row.score else {
         return;
     };
-    right(buf, line, places.spark - 1, 0, &score.steps.to_string(), Style::new());
+    right(buf, line, places.spark - 2, 0, &score.steps.to_string(), Style::new());
     if let Some(fault) = &score.fault {
         text(buf, line, places.spark, 0, fault, face.depth.ink(WARNING));
         return;
@@ -230,8 +231,9 @@ fn spark(buf: &mut Buffer, line: Rect, score: &EpisodeScore, places: &Places) {
         let steps = column * errors.len() / shown..(column + 1) * errors.len() / shown;
         let worst = errors[steps].iter().copied().fold(f32::NAN, f32::max);
         if worst.is_finite() {
-            let symbol = eighth((worst / most).max(0.1)).to_string();
-            text(buf, line, places.spark + column as u16, 0, &symbol, Style::new());
+            // Never a full cell, or the lines of the list would run into one another.
+            let symbol = eighth((worst / most).clamp(0.125, 0.875)).to_string();
+            text(buf, line, places.spark + column as u16, 0, &symbol, dim());
         }
     }
 }

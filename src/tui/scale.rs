@@ -60,7 +60,7 @@ impl Scale {
         }
     }
 
-    /// At most so many round numbers on it, in order, with how they are written.
+    /// About so many round numbers on it, in order, with how they are written; its ends, where there would be one.
     pub fn ticks(self, most: usize) -> Vec<(f32, String)> {
         if most == 0 || !self.low.is_finite() || !self.high.is_finite() {
             return Vec::new();
@@ -72,8 +72,12 @@ impl Scale {
         let first = (self.low / step - 1e-3).ceil() as i64;
         let last = (self.high / step + 1e-3).floor() as i64;
         let decimals = (-step.log10().floor()).clamp(0.0, 6.0) as usize;
-        let tick = |i: i64| (i as f32 * step, format!("{:.decimals$}", i as f32 * step));
-        (first..=last).map(tick).collect()
+        let tick = |value: f32| (value, format!("{value:.decimals$}"));
+        // A low plot has room for no more than its ends.
+        if last <= first && most > 0 {
+            return vec![tick(self.low), tick(self.high)];
+        }
+        (first..=last).map(|i| tick(i as f32 * step)).collect()
     }
 
     fn log_ticks(self, most: usize) -> Vec<(f32, String)> {

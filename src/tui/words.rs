@@ -44,7 +44,8 @@ pub fn legend(buf: &mut Buffer, pane: Rect, row: u16, entries: &[Entry]) {
             return;
         }
         at = text(buf, pane, start, row, glyph, style);
-        at = text(buf, pane, at + 1, row, name, dim());
+        let gap = u16::from(!glyph.is_empty());
+        at = text(buf, pane, at + gap, row, name, dim());
     }
 }
 
@@ -65,6 +66,25 @@ pub fn legend_rows<'a, 'b>(entries: &'b [Entry<'a>], columns: u16) -> Vec<&'b [E
         rows.push(&entries[from..]);
     }
     rows
+}
+
+/// Writes a legend on the last rows of a pane, one row where it is low; returns the rows above it.
+pub fn legend_below(buf: &mut Buffer, pane: Rect, entries: &[Entry]) -> Rect {
+    let rows = legend_rows(entries, pane.width);
+    let most = match pane.height {
+        0..=4 => 0,
+        5..=8 => 1,
+        height => height / 4,
+    };
+    let shown = (rows.len() as u16).min(most);
+    let above = Rect {
+        height: pane.height - shown,
+        ..pane
+    };
+    for (i, row) in rows.into_iter().take(usize::from(shown)).enumerate() {
+        legend(buf, pane, above.height + i as u16, row);
+    }
+    above
 }
 
 #[cfg(test)]

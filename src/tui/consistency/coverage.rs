@@ -20,7 +20,7 @@ use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{PREDICTION, dim, strong};
 use super::super::view::Pane;
-use super::super::words::{Entry, legend, legend_rows};
+use super::super::words::{Entry, legend_below};
 use super::board;
 use crate::measure::calibration::{Calibration, CoveragePoint};
 use crate::session::snapshot::Snapshot;
@@ -45,18 +45,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let entries: [Entry; 4] = [
         ("─●", Style::new(), "filtered"),
         ("┈◆", ink, "predicted"),
-        ("··", dim(), "honest"),
         ("│", dim(), "95 %"),
+        ("··", dim(), "honest"),
     ];
-    let rows = legend_rows(&entries, inner.width);
-    let shown = (rows.len() as u16).min(inner.height / 3);
-    let plot_pane = Rect {
-        height: inner.height.saturating_sub(shown),
-        ..inner
-    };
-    for (i, row) in rows.into_iter().take(usize::from(shown)).enumerate() {
-        legend(buf, inner, plot_pane.height + i as u16, row);
-    }
+    let plot_pane = legend_below(buf, inner, &entries);
 
     let percent = Scale::linear(0.0, 100.0);
     let Some(mut plot) = Plot::new(plot_pane, percent, percent) else {

@@ -1,8 +1,8 @@
 //! Whether experts err alike, what that does to confidence (D14), and the α that would fit (D15).
 //!
 //! ```text
-//! experts ──────── correlation of errors
-//!         V     H     P      α̂
+//! experts ────────────── ρ of errors, fitted α
+//!         V     H     P   fit α
 //! V       1  0.41  0.35    0.71  oversure
 //! H             1  0.77    0.33  oversure
 //! P                   1    1.12
@@ -14,7 +14,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::super::face::Face;
-use super::super::paint::{below_title, right, text, title};
+use super::super::paint::{below_title, right, text, title, width};
 use super::super::theme::{dim, strong};
 use super::super::view::Pane;
 use super::super::words::sentence;
@@ -33,7 +33,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if pane.is_empty() {
         return;
     }
-    title(buf, pane, "experts", "correlation of errors, α̂", focused);
+    title(buf, pane, "experts", "ρ of errors, fitted α", focused);
     let inner = below_title(pane);
     let sensors = sensors(board);
     if sensors.is_empty() {
@@ -43,12 +43,12 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let ink = |expert: Expert| strong().patch(face.depth.ink(expert.rgb()));
     let letter = |expert: Expert| expert.letter().to_string();
     let end = |column: usize| 2 + (column as u16 + 1) * CELL;
-    let fitted = end(sensors.len());
+    let fitted = end(sensors.len()) + 1;
     for (column, &expert) in sensors.iter().enumerate() {
         right(buf, inner, end(column), 0, &letter(expert), ink(expert));
     }
     if !board.alphas.is_empty() {
-        right(buf, inner, fitted, 0, "α̂", dim());
+        right(buf, inner, fitted, 0, "fit α", dim());
     }
     for (row, &expert) in sensors.iter().enumerate() {
         let at = 1 + row as u16;
@@ -63,7 +63,9 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         }
         if let Some((_, alpha)) = board.alphas.iter().find(|(of, _)| *of == expert) {
             right(buf, inner, fitted, at, &format!("{:.2}", alpha.alpha), Style::new());
-            text(buf, inner, fitted + 2, at, reading(alpha.alpha), dim());
+            let [short, long] = reading(alpha.alpha);
+            let fits = fitted + 2 + width(long) <= inner.width;
+            text(buf, inner, fitted + 2, at, if fits { long } else { short }, dim());
         }
     }
     let mut row = 1 + sensors.len() as u16;
@@ -71,7 +73,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         row = sentence(buf, inner, row, &dependence.sentence, Style::new());
     }
     if !board.alphas.is_empty() {
-        let from = format!("α̂ from {}: a reading, the model stays as it is", board.alphas_from);
+        let from = format!("α fitted on {}: a reading, the model stays as it is", board.alphas_from);
         sentence(buf, inner, row, &from, dim());
     }
 }
@@ -91,11 +93,11 @@ fn rho(board: &BoardView, a: usize, b: usize) -> Option<f64> {
     pairs.iter().find(|pair| same((pair.a, pair.b))).map(|pair| pair.rho)
 }
 
-/// What a fitted α says of an expert as trained.
-fn reading(alpha: f64) -> &'static str {
+/// What a fitted α says of an expert as trained, short and long.
+fn reading(alpha: f64) -> [&'static str; 2] {
     match alpha {
-        alpha if alpha < 0.9 => "oversure as trained",
-        alpha if alpha > 1.1 => "too timid as trained",
-        _ => "as sure as it should be",
+        alpha if alpha < 0.9 => ["oversure", "oversure as trained"],
+        alpha if alpha > 1.1 => ["too timid", "too timid as trained"],
+        _ => ["fair", "as sure as it should be"],
     }
 }

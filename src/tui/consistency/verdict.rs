@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::super::face::Face;
-use super::super::paint::{below_title, right, text, title};
+use super::super::paint::{below_title, right, text, title, width};
 use super::super::theme::{PREDICTION, dim, strong};
 use super::super::view::Pane;
 use super::super::words::sentence;
@@ -14,8 +14,8 @@ use crate::measure::calibration::{Calibration, CoveragePoint};
 use crate::session::snapshot::Snapshot;
 
 /// Where the two columns of numbers end.
-const FILTERED: u16 = 22;
-const PREDICTED: u16 = 33;
+const FILTERED: u16 = 24;
+const PREDICTED: u16 = 37;
 
 /// Draws the sentences, the most important first.
 pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -56,15 +56,14 @@ pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let both = [board.filtered.as_ref(), board.predicted.as_ref()];
     let last = board.by_head.last().filter(|_| board.by_head.len() > 1);
     let nees = [board.by_head.first(), last].map(|at| at.map(|at| at.mean));
-    let rows: [(&str, [Option<String>; 2], &str); 8] = [
+    let rows: [(&str, [Option<String>; 2], &str); 7] = [
         ("holds of 95 %", both.map(|c| c.and_then(held).map(|held| format!("{:.0} %", 100.0 * held))), ""),
         ("NEES", nees.map(|nees| nees.map(|nees| format!("{nees:.1}"))), "2 is honest"),
         ("  without R_p", [board.filtered_bare_nees.map(|nees| format!("{nees:.1}")), None], "probe taken as exact"),
         ("off by", both.map(|c| c.map(|c| format!("{:.2}", c.area))), "area to the diagonal"),
-        ("tr P", both.map(|c| c.map(|c| format!("{:.1}", c.sharpness_cm2))), "cm², smaller is sharper"),
+        ("tr P", both.map(|c| c.map(|c| format!("{:.1}", c.sharpness_cm2))), "cm², less is sharper"),
         ("NLL", both.map(|c| c.map(|c| format!("{:.2}", c.nll))), "nats, lower is better"),
-        ("CRPS x", both.map(|c| c.map(|c| format!("{:.2}", c.crps_cm[0]))), "cm"),
-        ("CRPS y", both.map(|c| c.map(|c| format!("{:.2}", c.crps_cm[1]))), "cm"),
+        ("CRPS x, y", both.map(|c| c.map(|c| format!("{:.2} {:.2}", c.crps_cm[0], c.crps_cm[1]))), "cm"),
     ];
     for (i, (name, values, note)) in rows.iter().enumerate() {
         let row = 1 + i as u16;
@@ -72,9 +71,11 @@ pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         for (value, end) in values.iter().zip([FILTERED, PREDICTED]) {
             right(buf, inner, end, row, value.as_deref().unwrap_or("–"), Style::new());
         }
-        text(buf, inner, PREDICTED + 2, row, note, dim());
+        if PREDICTED + 2 + width(note) <= inner.width {
+            text(buf, inner, PREDICTED + 2, row, note, dim());
+        }
     }
-    sentence(buf, inner, 10, "Averages over episodes, not along time: steps of one episode are not independent.", dim());
+    sentence(buf, inner, 9, "Averages over episodes, not along time: steps of one episode are not independent.", dim());
 }
 
 /// The part held of a claimed 95 %.

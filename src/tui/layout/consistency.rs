@@ -13,7 +13,7 @@ use super::{Layout, Shape, columns, rows};
 use crate::tui::view::Pane;
 
 /// Rows of the numbers.
-const NUMBERS: u16 = 10;
+const NUMBERS: u16 = 9;
 
 impl Layout {
     pub(super) fn consistency(&mut self, body: Rect, _shape: Shape) {
@@ -21,7 +21,7 @@ impl Layout {
         let gap = u16::from(is_roomy);
         let above = self.put_timeline(body, 2);
         let above = rows(above, above.height.saturating_sub(gap)).0;
-        let (verdict, rest) = rows(above, if is_roomy { 6 } else { 4 });
+        let (verdict, rest) = rows(above, if is_roomy { 5 } else { 3 });
         self.put(Pane::Verdict, verdict);
         let rest = rows(rest, gap).1;
         let half = rest.width.saturating_sub(2).div_ceil(2);

@@ -34,9 +34,10 @@ impl Layout {
             self.put(Pane::Spread, spread);
             return;
         }
+        // The one in the middle has the most to say.
         let third = (plots.width - 4) / 3;
-        let (quality, rest) = columns(plots, third, 2);
-        let (spread, samples) = columns(rest, third, 2);
+        let (quality, rest) = columns(plots, third - 3, 2);
+        let (spread, samples) = columns(rest, third + 4, 2);
         self.put(Pane::Quality, quality);
         self.put(Pane::Spread, spread);
         self.put(Pane::Samples, samples);

@@ -9,6 +9,7 @@ use super::super::face::Face;
 use super::super::paint::put;
 use super::super::plane::Plane;
 use super::super::theme::{dim, strong};
+use super::at_step;
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
 
@@ -90,45 +91,72 @@ impl Arrows {
         }
     }
 
-    /// Draws the letters at the tips; one that another has taken moves aside.
-    pub fn letters(&self, buf: &mut Buffer, pane: Rect, view: &Plane, face: &Face) {
-        let prior = Expert::Prior;
-        let ink = |expert: Expert| strong().patch(face.depth.ink(expert.rgb()));
-        let mut taken: Vec<(u16, u16)> = Vec::new();
-        let mut letter = |at: (f32, f32), symbol: char, style: Style| {
-            let Some((column, row)) = view.cell(at) else { return };
-            let free = (0..4).map(|aside| (column + aside, row));
-            if let Some(cell) = free.into_iter().find(|cell| !taken.contains(cell)) {
-                put(buf, pane, cell.0, cell.1, symbol, style);
-                taken.push(cell);
-            }
-        };
-        letter(self.start, prior.letter(), ink(prior));
+    /// The letters with their cells: the prior, the sum where it is not the belief itself, the sensors. One whose cell
+    /// another has taken moves aside.
+    fn letters(&self, view: &Plane) -> Vec<((u16, u16), char, Option<Expert>)> {
+        let prior = (self.start, Expert::Prior.letter(), Some(Expert::Prior));
         // At its true length the correction ends where the belief's own mark stands.
-        if self.factor > 1.0 {
-            letter(self.sum, 'Σ', strong());
+        let sum = (self.factor > 1.0).then_some((self.sum, 'Σ', None));
+        let tips = self.tips.iter().map(|&(expert, tip)| (tip, expert.letter(), Some(expert)));
+        let mut placed: Vec<((u16, u16), char, Option<Expert>)> = Vec::new();
+        for (at, symbol, expert) in [prior].into_iter().chain(sum).chain(tips) {
+            let Some((column, row)) = view.cell(at) else {
+                continue;
+            };
+            let is_free = |cell: &(u16, u16)| placed.iter().all(|(taken, ..)| taken != cell);
+            let free = (0..5).map(|aside| (column + aside, row)).find(is_free);
+            if let Some(cell) = free {
+                placed.push((cell, symbol, expert));
+            }
         }
-        for &(expert, tip) in &self.tips {
-            letter(tip, expert.letter(), ink(expert));
+        placed
+    }
+
+    /// The cells of the letters.
+    pub fn cells(&self, view: &Plane) -> Vec<(u16, u16)> {
+        self.letters(view).into_iter().map(|(cell, ..)| cell).collect()
+    }
+
+    /// Draws the letters.
+    pub fn draw(&self, buf: &mut Buffer, pane: Rect, view: &Plane, face: &Face) {
+        for ((column, row), symbol, expert) in self.letters(view) {
+            let ink = expert.map_or_else(Style::new, |expert| face.depth.ink(expert.rgb()));
+            put(buf, pane, column, row, symbol, strong().patch(ink));
         }
     }
 }
 
-/// Draws where the belief would be without each expert: its letter in brackets, where that is a cell or more away.
-pub fn ghosts(buf: &mut Buffer, pane: Rect, view: &Plane, snapshot: &Snapshot, face: &Face) {
+/// Draws where the belief would be without each expert, its letter in brackets; not over a letter or the belief itself,
+/// from which it can then hardly be told.
+pub fn ghosts(
+    buf: &mut Buffer,
+    (pane, taken): (Rect, &[(u16, u16)]),
+    view: &Plane,
+    snapshot: &Snapshot,
+    face: &Face,
+) {
     let Some(fusion) = &snapshot.fusion else {
         return;
     };
+    let belief = snapshot
+        .position
+        .as_ref()
+        .and_then(|position| at_step(&position.belief, snapshot.cursor))
+        .and_then(|belief| view.cell(view.dot([belief.x, belief.y])));
     for (expert, reading) in std::iter::zip(&snapshot.experts, &fusion.experts) {
         let Some(without) = reading.without else {
             continue;
         };
-        if let Some((column, row)) = view.cell(view.dot([without.x, without.y])) {
-            let ink = dim().patch(face.depth.ink(expert.expert.rgb()));
-            let first = column.saturating_sub(1);
-            for (i, symbol) in ['(', expert.expert.letter(), ')'].into_iter().enumerate() {
-                put(buf, pane, first + i as u16, row, symbol, ink);
-            }
+        let Some((column, row)) = view.cell(view.dot([without.x, without.y])) else {
+            continue;
+        };
+        let cells = [0, 1, 2].map(|i| ((column + i).saturating_sub(1), row));
+        if taken.iter().chain(&belief).any(|cell| cells.contains(cell)) {
+            continue;
+        }
+        let ink = dim().patch(face.depth.ink(expert.expert.rgb()));
+        for (cell, symbol) in cells.into_iter().zip(['(', expert.expert.letter(), ')']) {
+            put(buf, pane, cell.0, row, symbol, ink);
         }
     }
 }

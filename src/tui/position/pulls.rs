@@ -105,7 +105,7 @@ fn errors(buf: &mut Buffer, pane: Rect, first: u16, snapshot: &Snapshot) {
     if let Some(series) = &snapshot.series {
         let now = |values: &[f32]| values.get(snapshot.cursor).copied().filter(|value| value.is_finite());
         let shown = |value: Option<f32>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1}"));
-        line("NEES", &shown(now(&series.nees)), "2 is honest");
+        line("NEES", &shown(now(&series.nees)), "95 % below 6.0");
         line("  no R_p", &shown(now(&series.nees_bare)), "probe exact");
     }
     if let Some(edit) = &snapshot.control_edit {

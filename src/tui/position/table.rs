@@ -7,7 +7,7 @@
 //!  5    D━━V   H
 //!      0         5        10
 //! ╌ truth  ─ belief  ┈ prediction  + tip  1σ solid 39 %, 95 % dashed
-//! V H pulls from D ×10, Σ their sum  (V) belief without V
+//! D─V─H pulls ×10, sum Σ  (V) without V
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -23,11 +23,12 @@ use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
 use super::{at_step, dots, ellipses, marks, masses, off, paths, window};
+use crate::modality::Expert;
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
 use crate::session::snapshot::{PositionView, Snapshot};
 
 /// Rows of the legend at most.
-const LEGEND: u16 = 4;
+const LEGEND: u16 = 3;
 
 /// Draws the plane with its legend.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -83,10 +84,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     {
         put(buf, plane, column, row, 'r', strong());
     }
-    ghosts(buf, plane, &view, snapshot, face);
+    let taken = arrows.as_ref().map(|arrows| arrows.cells(&view)).unwrap_or_default();
+    ghosts(buf, (plane, &taken), &view, snapshot, face);
     marks(buf, plane, &view, position, snapshot.cursor, face);
     if let Some(arrows) = &arrows {
-        arrows.letters(buf, plane, &view, face);
+        arrows.draw(buf, plane, &view, face);
     }
 
     let cut = at_step(&position.belief, snapshot.cursor)
@@ -136,9 +138,17 @@ impl Said {
         } else {
             masses()
         };
+        let letters: String = snapshot
+            .experts
+            .iter()
+            .map(|view| view.expert)
+            .filter(|&expert| expert != Expert::Prior)
+            .map(|expert| format!("─{}", expert.letter()))
+            .collect();
+        let chain = format!("{}{letters}", Expert::Prior.letter());
         let pulls = match self.arrows {
-            Some(factor) if factor > 1.0 => format!("to V H P…: pulls ×{factor}, Σ their sum"),
-            _ => "to V H P…: pulls, sum at ●".to_owned(),
+            Some(factor) if factor > 1.0 => format!("pulls ×{factor}, sum Σ"),
+            _ => "pulls, sum ●".to_owned(),
         };
         let samples = self.samples.map(|samples| format!("of {samples} samples"));
         let name = snapshot
@@ -153,10 +163,10 @@ impl Said {
             ("+", Style::new(), "tip"),
         ];
         if self.arrows.is_some() {
-            entries.push(("D", strong(), &pulls));
-            entries.push(("(V)", dim(), "belief without V"));
+            entries.push((&chain, strong(), &pulls));
+            entries.push(("(V)", dim(), "without V"));
         }
-        entries.push(("◯", Style::new(), &masses));
+        entries.push(("○", Style::new(), &masses));
         if let Some((belief, prediction)) = &name {
             entries.push(("╴·○", other, belief));
             entries.push(("· ◇", other, prediction));

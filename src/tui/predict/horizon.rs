@@ -1,11 +1,11 @@
 //! PSNR of the belief's and the prediction's frames over the horizon, of both models where there are two.
 //!
 //! ```text
-//! PSNR dB ──────── A v-h-p  B vhp
+//! PSNR dB ──────────── ●29.1 ◆24.2
 //! 30│●━━━━━━━━━━━━
 //! 25│   ┈┈┈┈◆┈┈┈┈┈
 //!   └+1   +5   +11
-//! ─ belief 29.1  ┈ prediction 24.2
+//! ─● belief  ┈◆ prediction
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -19,13 +19,12 @@ use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{OTHER, PREDICTION, dim, strong};
 use super::super::view::Pane;
-use super::super::words::{Entry, legend, legend_rows};
+use super::super::words::{Entry, legend_below};
 use super::{ahead, cursor_ahead, labels};
 use crate::session::snapshot::{Snapshot, StepPsnr};
 
 /// One line of the plot.
 struct Line<'a> {
-    name: &'static str,
     glyph: &'static str,
     mark: char,
     stroke: Stroke,
@@ -47,34 +46,18 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     }
     let lines = lines(snapshot, face);
-    let names: Vec<String> = snapshot
-        .other
-        .iter()
-        .flat_map(|other| [("A", snapshot.model), ("B", other.model)])
-        .filter_map(|(letter, model)| Some(format!("{letter} {}", snapshot.models.get(model)?.name)))
-        .collect();
-    title(buf, pane, "PSNR dB", &names.join("  "), focused);
-    let inner = below_title(pane);
-
     let now: Vec<String> = lines
         .iter()
-        .map(|line| match line.at(snapshot.cursor) {
-            db if db.is_finite() => format!("{} {db:.1}", line.name),
-            _ => line.name.to_owned(),
-        })
+        .filter(|line| line.at(snapshot.cursor).is_finite())
+        .map(|line| format!("{}{:.1}", line.mark, line.at(snapshot.cursor)))
         .collect();
-    let entries: Vec<Entry> = std::iter::zip(&lines, &now)
-        .map(|(line, now)| (line.glyph, line.style, now.as_str()))
+    title(buf, pane, "PSNR dB", &now.join(" "), focused);
+    let inner = below_title(pane);
+    let names = names(snapshot);
+    let entries: Vec<Entry> = std::iter::zip(&lines, &names)
+        .map(|(line, name)| (line.glyph, line.style, name.as_str()))
         .collect();
-    let rows = legend_rows(&entries, inner.width);
-    let shown = (rows.len() as u16).min(inner.height / 3);
-    let plot_pane = Rect {
-        height: inner.height.saturating_sub(shown),
-        ..inner
-    };
-    for (i, row) in rows.into_iter().take(usize::from(shown)).enumerate() {
-        legend(buf, inner, plot_pane.height + i as u16, row);
-    }
+    let plot_pane = legend_below(buf, inner, &entries);
 
     let steps: Vec<(usize, usize)> = ahead(snapshot).collect();
     let last = steps.last().map_or(0, |&(h, _)| h);
@@ -104,12 +87,22 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     plot.draw(buf, &labels(last));
 }
 
+/// What the lines are called, in their order.
+fn names(snapshot: &Snapshot) -> Vec<String> {
+    let mut names = vec!["belief".to_owned(), "prediction".to_owned()];
+    if let Some(other) = &snapshot.other {
+        let model = snapshot.models.get(other.model);
+        let model = model.map_or("B", |model| &model.name);
+        names.extend([format!("{model} belief"), "prediction".to_owned()]);
+    }
+    names
+}
+
 /// The strokes are those of the position plane.
 fn lines<'a>(snapshot: &'a Snapshot, face: &Face) -> Vec<Line<'a>> {
     let prediction = face.depth.ink(PREDICTION);
     let other = face.depth.ink(OTHER);
-    let line = |name, (glyph, mark), stroke, style, of, value| Line {
-        name,
+    let line = |(glyph, mark), stroke, style, of, value| Line {
         glyph,
         mark,
         stroke,
@@ -121,13 +114,13 @@ fn lines<'a>(snapshot: &'a Snapshot, face: &Face) -> Vec<Line<'a>> {
     let predicted: fn(&StepPsnr) -> Option<f32> = |psnr| psnr.prediction;
     let own = &snapshot.psnr_db[..];
     let mut lines = vec![
-        line("belief", ("─", '●'), Stroke::Solid, Style::new(), own, belief),
-        line("prediction", ("┈", '◆'), Stroke::Dotted, prediction, own, predicted),
+        line(("─●", '●'), Stroke::Solid, Style::new(), own, belief),
+        line(("┈◆", '◆'), Stroke::Dotted, prediction, own, predicted),
     ];
     if let Some(b) = &snapshot.other {
         let of = &b.psnr_db[..];
-        lines.push(line("B belief", ("╴·", '○'), Stroke::DashDot, other, of, belief));
-        lines.push(line("B prediction", ("· ·", '◇'), Stroke::Sparse, other, of, predicted));
+        lines.push(line(("╴·○", '○'), Stroke::DashDot, other, of, belief));
+        lines.push(line(("· ◇", '◇'), Stroke::Sparse, other, of, predicted));
     }
     lines
 }

@@ -13,7 +13,7 @@ use ratatui::style::Style;
 
 use super::super::face::Face;
 use super::super::image::Raster;
-use super::super::paint::{below_title, text, title};
+use super::super::paint::{below_title, text, title, width};
 use super::super::theme::{dim, strong};
 use super::super::view::Pane;
 use super::super::words::{sentence, wrap};
@@ -48,12 +48,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     };
 
-    let sentences = sentences(frames);
-    let rows = |columns: u16| -> u16 {
-        let lines = sentences.iter().map(|line| wrap(line, columns).len());
-        lines.sum::<usize>() as u16
-    };
-    let wanted = rows(inner.width).min(inner.height / 2);
+    // On a low pane pictures say more than sentences.
+    let sentences = if inner.height < 8 { short(frames) } else { sentences(frames) };
+    let lines = sentences.iter().map(|line| wrap(line, inner.width).len());
+    let wanted = (lines.sum::<usize>() as u16).min(inner.height / 2);
     let side = (inner.width.saturating_sub(2) / 3).min(inner.height.saturating_sub(1 + wanted) * 2);
     if side >= 4 {
         images(buf, inner, (side, frames), face);
@@ -78,8 +76,12 @@ fn images(buf: &mut Buffer, pane: Rect, (side, frames): (u16, &SampleFrames), fa
             width: side.min(pane.width.saturating_sub(at)),
             ..pane
         };
-        let short = if i == 0 && name.len() > usize::from(side) { "mean" } else { name };
-        text(buf, cell, 0, 0, short, strong());
+        let short = match i {
+            0 if width(name) > side => "mean".to_owned(),
+            1 if width(name) > side => format!("σ≤{range}"),
+            _ => name.clone(),
+        };
+        text(buf, cell, 0, 0, &short, strong());
         let image = Rect {
             y: cell.y + 1,
             height: side.div_ceil(2).min(cell.height.saturating_sub(1)),
@@ -98,6 +100,13 @@ fn picture(buf: &mut Buffer, pane: Rect, raster: &Raster, face: &Face) {
     if !shown {
         raster.draw(buf, pane, face.depth);
     }
+}
+
+/// The blur index alone.
+fn short(frames: &SampleFrames) -> Vec<String> {
+    let index = frames.blur_of_samples.filter(|index| index.is_finite());
+    let said = |index: f32| format!("mean: {index:.2} of the edges");
+    index.map(said).into_iter().collect()
 }
 
 /// What the blur indices say.

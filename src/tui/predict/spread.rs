@@ -1,12 +1,12 @@
 //! How sure the rollout is, told in three ways in one plot (D20).
 //!
 //! ```text
-//! σ of the position cm ────── no R_p
+//! σ of the position cm ─ ─1.90 ○1.81 ┈0.40
 //! 2│        ○━○━○━○
 //! 1│  ○━○━○━
 //! 0│┈┈┈┈┈┈┈┈┈┈┈┈┈┈┈
 //!  └+1   +5   +11
-//! ─ A P Aᵀ+Q 1.9  ○ 32 samples 1.8  ┈ head 0.4
+//! ─ A P Aᵀ+Q  ○ samples  ┈ head  without R_p
 //! ```
 //! The head states one step's spread and does not accumulate; the other two should agree, and grow.
 
@@ -21,7 +21,7 @@ use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{PREDICTION, dim, strong};
 use super::super::view::Pane;
-use super::super::words::{Entry, legend, legend_rows};
+use super::super::words::{Entry, legend_below};
 use super::{cursor_ahead, labels};
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::spread::SpreadView;
@@ -54,42 +54,28 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     };
     let (is_position, sigmas) = sigmas(spread);
-    if is_position {
-        title(buf, pane, "σ of the position cm", "without R_p", focused);
-    } else {
-        title(buf, pane, "σ of the latent", "no probe", focused);
-    }
+    // Index 0 is the first step ahead.
+    let now = cursor_ahead(snapshot).and_then(|h| Some((h, *sigmas.get(h.checked_sub(1)?)?)));
+    let name = match (is_position, pane.width < 36) {
+        (true, false) => "σ of the position cm",
+        (true, true) => "σ cm",
+        (false, _) => "σ of z",
+    };
+    let note = now.map(|(_, [head, propagated, sampled])| format!("─{propagated:.2} ○{sampled:.2} ┈{head:.2}"));
+    title(buf, pane, name, &note.unwrap_or_default(), focused);
     let Some(last) = sigmas.len().checked_sub(1) else {
         text(buf, inner, 0, 0, "nothing was predicted yet", dim());
         return;
     };
 
-    // Index 0 is the first step ahead.
-    let now = cursor_ahead(snapshot).and_then(|h| Some((h, sigmas.get(h.checked_sub(1)?)?)));
-    let said = |name: String, i: usize| match now {
-        Some((_, sigma)) => format!("{name} {:.2}", sigma[i]),
-        None => name,
-    };
-    let names = [
-        said("A P Aᵀ+Q".to_owned(), 1),
-        said(format!("{} samples", spread.samples), 2),
-        said("head alone".to_owned(), 0),
-    ];
     let ink = face.depth.ink(PREDICTION);
-    let entries: [Entry; 3] = [
-        ("─", Style::new(), &names[0]),
-        ("○", ink, &names[1]),
-        ("┈", ink, &names[2]),
+    let entries: [Entry; 4] = [
+        ("─", Style::new(), "A P Aᵀ+Q"),
+        ("○", ink, "samples"),
+        ("┈", ink, "head"),
+        ("", dim(), if is_position { "without R_p" } else { "no probe: latent" }),
     ];
-    let rows = legend_rows(&entries, inner.width);
-    let shown = (rows.len() as u16).min(inner.height / 3);
-    let plot_pane = Rect {
-        height: inner.height.saturating_sub(shown),
-        ..inner
-    };
-    for (i, row) in rows.into_iter().take(usize::from(shown)).enumerate() {
-        legend(buf, inner, plot_pane.height + i as u16, row);
-    }
+    let plot_pane = legend_below(buf, inner, &entries);
 
     let y = Scale::from_zero(sigmas.iter().flatten().copied());
     let Some(mut plot) = Plot::new(plot_pane, Scale::linear(1.0, (last + 1) as f32), y) else {
