@@ -63,7 +63,7 @@ use ratatui::style::Style;
 pub use face::Face;
 pub use print::print;
 
-use crate::session::snapshot::Snapshot;
+use crate::session::snapshot::{Badge, Snapshot};
 use layout::{Layout, SMALLEST, Shape};
 use view::Pane;
 
@@ -127,6 +127,7 @@ fn layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
         view: face.view,
         steps,
         experts: snapshot.experts.len(),
+        product: snapshot.badge != Badge::NoProduct,
         zoom: face.zoomed.then_some(face.focus),
     };
     Layout::of(screen, shape)

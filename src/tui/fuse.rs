@@ -4,3 +4,8 @@ pub mod dims;
 pub mod divergence;
 pub mod pairs;
 pub mod series;
+
+mod bounds;
+mod empty;
+
+pub use bounds::{mark, range};

@@ -30,6 +30,8 @@ pub struct Shape {
     pub steps: usize,
     /// How many experts the model has, the prior among them.
     pub experts: usize,
+    /// Whether the model multiplies them.
+    pub product: bool,
     /// The pane that is alone on the screen.
     pub zoom: Option<Pane>,
 }
@@ -192,6 +194,7 @@ mod tests {
                         view,
                         steps,
                         experts,
+                        product: experts != 3,
                         zoom: None,
                     };
                     check(screen, shape);
@@ -217,6 +220,7 @@ mod tests {
                     view,
                     steps: 16,
                     experts: 4,
+                    product: true,
                     zoom: Some(pane),
                 };
                 assert!(!Layout::of(screen, shape).get(pane).is_empty(), "{pane:?}");

@@ -20,7 +20,7 @@ use super::axis::{Axis, LABELS};
 use super::face::Face;
 use super::layout::rows;
 use super::paint::{column, put, right, text};
-use super::stack::stack;
+use super::stack::{legend, stack};
 use super::theme::{PREDICTION, dim, strong};
 use super::view::Pane;
 use crate::modality::Expert;
@@ -266,14 +266,7 @@ fn shares(buf: &mut Buffer, pane: Rect, axis: Axis, snapshot: &Snapshot, face: &
             stack(buf, pane, axis.column(step) + i, &shares, face.depth);
         }
     }
-    let row = pane.height - 1;
-    let letters = snapshot.experts.len() as u16 + 2;
-    let mut at = pane.width.saturating_sub(letters);
-    for view in &snapshot.experts {
-        let ink = strong().patch(face.depth.ink(view.expert.rgb()));
-        at = text(buf, pane, at, row, &view.expert.letter().to_string(), ink);
-    }
-    text(buf, pane, at + 1, row, "↑", dim());
+    legend(buf, pane, pane.height - 1, snapshot, face);
 }
 
 fn psnr(
