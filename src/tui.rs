@@ -27,6 +27,7 @@ pub mod view;
 mod axis;
 mod braille;
 mod consistency;
+pub mod episodes;
 mod experts;
 mod frames;
 mod fuse;
@@ -35,16 +36,22 @@ mod image;
 mod latents;
 mod lattice;
 mod paint;
+mod plane;
+mod plot;
 mod position;
 mod predict;
 mod print;
+mod scale;
 mod stack;
 mod status;
 mod strip;
 mod timeline;
+mod words;
 
 #[cfg(test)]
 mod fixture;
+#[cfg(test)]
+mod dump;
 #[cfg(test)]
 mod tests;
 
@@ -76,6 +83,9 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
         drawing(pane)(buf, rect, snapshot, face);
     }
     status::message(buf, layout.message, snapshot, face);
+    if let Some(list) = &face.episodes {
+        episodes::draw(buf, screen, snapshot, face, list);
+    }
     if let Some(page) = face.help {
         help::draw(buf, screen, page);
     }
@@ -95,10 +105,11 @@ fn drawing(pane: Pane) -> fn(&mut Buffer, Rect, &Snapshot, &Face) {
         Pane::Divergence => fuse::divergence::draw,
         Pane::Series => fuse::series::draw,
         Pane::Spread => predict::spread::draw,
-        Pane::Fan => predict::fan::draw,
+        Pane::Quality => predict::horizon::draw,
         Pane::Samples => predict::samples::draw,
         Pane::Pulls => position::pulls::draw,
-        Pane::Episodes => consistency::episodes::draw,
+        Pane::Verdict => consistency::verdict::sentences,
+        Pane::Numbers => consistency::verdict::numbers,
         Pane::Coverage => consistency::coverage::draw,
         Pane::Horizons => consistency::horizons::draw,
         Pane::Dependence => consistency::dependence::draw,

@@ -15,6 +15,10 @@ pub enum Stroke {
     Dashed,
     /// Every third dot.
     Dotted,
+    /// Four dots on, a gap, one dot, a gap.
+    DashDot,
+    /// Every sixth dot.
+    Sparse,
 }
 
 impl Stroke {
@@ -23,6 +27,8 @@ impl Stroke {
             Self::Solid => true,
             Self::Dashed => dot % 6 < 3,
             Self::Dotted => dot.is_multiple_of(3),
+            Self::DashDot => matches!(dot % 9, 0..=3 | 6),
+            Self::Sparse => dot.is_multiple_of(6),
         }
     }
 }
@@ -87,6 +93,12 @@ impl Canvas {
         }
     }
 
+    /// Whether nothing has been drawn in a cell.
+    pub fn is_empty(&self, column: u16, row: u16) -> bool {
+        let (column, row) = (usize::from(column), usize::from(row));
+        column < self.columns && self.cells.get(row * self.columns + column).is_some_and(|cell| cell.0 == 0)
+    }
+
     /// Writes the dots into the pane's upper left corner.
     pub fn draw(&self, buf: &mut Buffer, pane: Rect) {
         for (i, &(bits, style)) in self.cells.iter().enumerate() {
@@ -118,6 +130,8 @@ mod tests {
         assert_eq!(drawn(Stroke::Solid), Buffer::with_lines(["⣀⣀⣀⣀⣀⣀"]));
         assert_eq!(drawn(Stroke::Dashed), Buffer::with_lines(["⣀⡀ ⣀⡀ "]));
         assert_eq!(drawn(Stroke::Dotted), Buffer::with_lines(["⡀⢀ ⡀⢀ "]));
+        assert_eq!(drawn(Stroke::DashDot), Buffer::with_lines(["⣀⣀ ⡀⢀⣀"]));
+        assert_eq!(drawn(Stroke::Sparse), Buffer::with_lines(["⡀  ⡀  "]));
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What only this face knows: where the focus is, what lies over the screen, what the terminal can show.
 
+use super::episodes::list::List;
 use super::pixels::Pixels;
 use super::theme::Depth;
 use super::view::{Pane, View, Wants};
@@ -13,6 +14,8 @@ pub struct Face {
     pub focus: Pane,
     /// Whether that pane fills the screen.
     pub zoomed: bool,
+    /// The list of episodes, while it lies over the screen.
+    pub episodes: Option<List>,
     /// Page of the keys that is shown over the screen.
     pub help: Option<usize>,
     /// What is being typed, with what stands before it; none when nothing is.
@@ -34,6 +37,7 @@ impl Default for Face {
             view,
             focus: view.panes()[0],
             zoomed: false,
+            episodes: None,
             help: None,
             prompt: None,
             expert: 0,

@@ -8,6 +8,7 @@ use crate::episode::{Frame, PlanarPose, Split};
 use crate::modality::{Expert, ExpertSet};
 use crate::session::command::{Looping, Scope};
 use crate::session::settings::Sampling;
+use crate::session::snapshot::other::OtherView;
 use crate::session::snapshot::{
     Badge, EpisodeView, ErrorOf, Estimate, Event, EventKind, ExpertView, FrameRow, LatentView,
     ModelInfo, PositionView, SignedFrame, Snapshot, StepPsnr, StripCell,
@@ -134,6 +135,39 @@ fn position(cursor: usize, steps: usize) -> PositionView {
         belief_error_m: Some(0.004),
         prediction_error_m: predicted(cursor).map(|_| 0.012),
     }
+}
+
+/// A second model at the same moment, a little worse at everything.
+pub fn other(cursor: usize, steps: usize) -> Option<Arc<OtherView>> {
+    let own = snapshot(cursor, steps);
+    let worse = |path: &[Option<Estimate>]| {
+        let moved = |estimate: &Option<Estimate>| {
+            estimate.map(|estimate| Estimate {
+                x: estimate.x - 0.006,
+                y: estimate.y + 0.009,
+                ..estimate
+            })
+        };
+        Arc::new(path.iter().map(moved).collect::<Vec<_>>())
+    };
+    let psnr = own.psnr_db.iter().map(|psnr| StepPsnr {
+        belief: psnr.belief.map(|db| db - 2.0),
+        prediction: psnr.prediction.map(|db| db - 3.5),
+    });
+    let position = own.position.map(|position| PositionView {
+        belief: worse(&position.belief),
+        prediction: worse(&position.prediction),
+        ..position
+    });
+    Some(Arc::new(OtherView {
+        model: 0,
+        frames: own.frames,
+        difference: None,
+        strip: own.strip,
+        position,
+        psnr_db: Arc::new(psnr.collect()),
+        fault: None,
+    }))
 }
 
 /// The session at a step of an episode of so many.

@@ -1,122 +1,242 @@
-//! Rows of frames over the episode: truth, belief and prediction of every k-th step, k printed.
+//! Rows of frames over the episode: truth, belief, prediction and error of every k-th step, k printed.
 //!
 //! ```text
-//! every 2nd       1     3     5  │  7     9
+//! every 2nd       1     3     5     7  ◆  9
 //! truth         ▀▀▀▀▀ ▀▀▀▀▀ ▀▀▀▀▀│▀▀▀▀▀ ▀▀▀▀▀
 //! belief              ▀▀▀▀▀ ▀▀▀▀▀│▀▀▀▀▀ ▀▀▀▀▀
-//! prediction       context       │▀▀▀▀▀ ▀▀▀▀▀
+//! prediction    context          │▀▀▀▀▀ ▀▀▀▀▀
+//! error ±0.50         ▀▀▀▀▀ ▀▀▀▀▀│▀▀▀▀▀ ▀▀▀▀▀
 //! ```
-//! The bar stands where the rollout begins.
-
-use std::sync::Arc;
+//! The bar stands where the rollout begins; the cursor's step is reversed, or a diamond between two that are shown.
+//! Where four rows have no room, belief and prediction share one: the belief before the bar, the prediction after it.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::face::Face;
-use super::image::Raster;
+use super::image::{ERROR_RANGE, Raster};
 use super::paint::{put, text, width};
+use super::predict::edited;
 use super::theme::{PREDICTION, dim, strong};
+use super::view::{Pane, View};
 use crate::episode::Frame;
 use crate::session::snapshot::{Snapshot, StripCell};
 
 /// Columns of the labels.
-const LABELS: u16 = 11;
+const LABELS: u16 = 12;
 /// The smallest side of a frame that still shows something, in columns.
 const SMALLEST: u16 = 10;
 
-/// Side of a frame in columns, and k, for so many columns and rows of screen.
-fn sizes(width: u16, height: u16, steps: usize) -> (u16, usize) {
-    let tallest = height.saturating_sub(3) / 3 * 2;
-    let room = usize::from(width.saturating_sub(LABELS));
-    let all_at_once = (room / steps.max(1)).saturating_sub(1) as u16;
-    let side = if all_at_once >= SMALLEST {
-        all_at_once.min(tallest)
-    } else {
-        tallest
-    };
-    let every = (steps * usize::from(side + 1)).div_ceil(room.max(1));
-    (side, every.max(1))
+/// One row of the strip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Row {
+    Truth,
+    Belief,
+    Prediction,
+    /// The belief up to the start, the prediction after it.
+    Model,
+    Error,
 }
 
-/// Rows that are of use out of so many.
+const THREE: &[Row] = &[Row::Truth, Row::Belief, Row::Prediction];
+const FOUR: &[Row] = &[Row::Truth, Row::Belief, Row::Prediction, Row::Error];
+const SHARED: &[Row] = &[Row::Truth, Row::Model, Row::Error];
+
+/// Where the frames stand.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    rows: &'static [Row],
+    /// Side of a frame in columns.
+    side: u16,
+    /// Rows from one frame to the one below.
+    pitch: u16,
+    /// k.
+    every: usize,
+}
+
+impl Grid {
+    fn of(pane: (u16, u16), steps: usize, rows: &'static [Row], gap: u16) -> Self {
+        let (width, height) = pane;
+        let count = rows.len() as u16;
+        let tallest = height.saturating_sub(1 + gap * (count - 1)) / count * 2;
+        let room = usize::from(width.saturating_sub(LABELS));
+        let all_at_once = (room / steps.max(1)).saturating_sub(1) as u16;
+        let side = if all_at_once >= SMALLEST {
+            all_at_once.min(tallest)
+        } else {
+            tallest
+        };
+        let every = (steps * usize::from(side + 1)).div_ceil(room.max(1));
+        Self {
+            rows,
+            side,
+            pitch: side.div_ceil(2) + gap,
+            every: every.max(1),
+        }
+    }
+
+    /// The predict view's: four rows if they can be read, else three.
+    fn with_error(pane: (u16, u16), steps: usize) -> Self {
+        let four = Self::of(pane, steps, FOUR, 0);
+        if four.side >= SMALLEST {
+            four
+        } else {
+            Self::of(pane, steps, SHARED, 0)
+        }
+    }
+}
+
+/// Rows that are of use out of so many, without the error.
 pub fn rows(width: u16, height: u16, steps: usize) -> u16 {
-    let (side, _) = sizes(width, height, steps);
-    if side == 0 {
+    let grid = Grid::of((width, height), steps, THREE, 1);
+    if grid.side == 0 {
         0
     } else {
-        3 + 3 * side.div_ceil(2)
+        grid.pitch * 3
     }
 }
 
-/// Draws the rows.
+fn steps(snapshot: &Snapshot) -> usize {
+    let episode = snapshot.episode.as_ref();
+    episode.map_or(0, |episode| episode.secs.len())
+}
+
+/// Draws truth, belief and prediction; in the predict view the error, too.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
-    let steps = snapshot
-        .episode
-        .as_ref()
-        .map_or(0, |episode| episode.secs.len());
-    let (side, every) = sizes(pane.width, pane.height, steps);
-    if steps == 0 || side == 0 || pane.width <= LABELS {
+    if face.view == View::Predict {
+        with_error(buf, pane, snapshot, face);
         return;
     }
-    let image_rows = side.div_ceil(2);
-    // A blank row between truth, belief and prediction.
-    let pitch = image_rows + 1;
-
-    text(buf, pane, 0, 0, &every_text(every), dim());
-    let prediction = strong().patch(face.depth.ink(PREDICTION));
-    let names = [
-        ("truth", strong()),
-        ("belief", strong()),
-        ("prediction", prediction),
-    ];
-    for (i, (name, style)) in names.into_iter().enumerate() {
-        text(buf, pane, 0, 1 + i as u16 * pitch, name, style);
-    }
-
-    for (place, step) in (0..steps).step_by(every).enumerate() {
-        let at = LABELS + place as u16 * (side + 1);
-        heading(buf, pane, at, side, step, snapshot);
-        if step <= snapshot.start && step + every > snapshot.start {
-            for row in 0..3 * pitch {
-                put(buf, pane, at + side, row, '│', strong());
-            }
-        }
-        if let Some(cell) = snapshot.strip.iter().find(|cell| cell.step == step) {
-            for (i, frame) in images(cell).into_iter().enumerate() {
-                let Some(frame) = frame else { continue };
-                let cell_pane = Rect {
-                    x: pane.x + at,
-                    y: pane.y + 1 + i as u16 * pitch,
-                    width: side,
-                    height: image_rows,
-                };
-                Raster::from(&**frame).draw(buf, cell_pane.intersection(pane), face.depth);
-            }
-        }
-    }
-    text(buf, pane, LABELS, 1 + 2 * pitch, "context", dim());
+    let grid = Grid::of((pane.width, pane.height), steps(snapshot), THREE, 1);
+    grid.draw(buf, pane, snapshot, face, false);
 }
 
-fn images(cell: &StripCell) -> [Option<&Arc<Frame>>; 3] {
-    [
-        Some(&cell.truth),
-        cell.belief.as_ref(),
-        cell.prediction.as_ref(),
-    ]
-}
-
-/// The step's number, counted from 1; the one under the cursor reversed.
-fn heading(buf: &mut Buffer, pane: Rect, at: u16, side: u16, step: usize, snapshot: &Snapshot) {
-    let number = format!(" {} ", step + 1);
-    let style = if step == snapshot.cursor {
-        Style::new().add_modifier(Modifier::REVERSED)
-    } else {
-        dim()
+/// Draws the same with the error; where controls are edited, the last row says how.
+fn with_error(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Strip);
+    let said = u16::from(snapshot.control_edit.is_some() && pane.height > 4);
+    let frames = Rect {
+        height: pane.height - said,
+        ..pane
     };
-    let indent = side.saturating_sub(width(&number)) / 2;
-    text(buf, pane, at + indent, 0, &number, style);
+    let grid = Grid::with_error((frames.width, frames.height), steps(snapshot));
+    grid.draw(buf, frames, snapshot, face, focused);
+    if let Some(edit) = snapshot.control_edit.as_ref().filter(|_| said > 0) {
+        let row = (1 + grid.pitch * grid.rows.len() as u16).min(frames.height);
+        text(buf, pane, 0, row, &edited::words(edit), strong());
+    }
+}
+
+impl Grid {
+    fn draw(self, buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
+        let steps = steps(snapshot);
+        if steps == 0 || self.side == 0 || pane.width <= LABELS {
+            return;
+        }
+        let mark = if focused { "▸ " } else { "" };
+        let at = text(buf, pane, 0, 0, mark, strong());
+        text(buf, pane, at, 0, &every_text(self.every), dim());
+        for (i, row) in self.rows.iter().enumerate() {
+            row.label(buf, pane, 1 + i as u16 * self.pitch, (self.pitch, face));
+        }
+        for (place, step) in (0..steps).step_by(self.every).enumerate() {
+            let at = LABELS + place as u16 * (self.side + 1);
+            self.heading(buf, pane, at, step, snapshot);
+            if step <= snapshot.start && step + self.every > snapshot.start {
+                for row in 1..=(self.pitch * self.rows.len() as u16) {
+                    put(buf, pane, at + self.side, row, '│', strong());
+                }
+            }
+            let Some(cell) = snapshot.strip.iter().find(|cell| cell.step == step) else {
+                continue;
+            };
+            for (i, row) in self.rows.iter().enumerate() {
+                let image = Rect {
+                    x: pane.x + at,
+                    y: pane.y + 1 + i as u16 * self.pitch,
+                    width: self.side,
+                    height: self.side.div_ceil(2),
+                };
+                if let Some(raster) = row.image(cell, snapshot.start) {
+                    raster.draw(buf, image.intersection(pane), face.depth);
+                }
+            }
+        }
+        if let Some(i) = self.rows.iter().position(|&row| row == Row::Prediction) {
+            text(buf, pane, LABELS, 1 + i as u16 * self.pitch, "context", dim());
+        }
+    }
+
+    /// The step's number, counted from 1; the one under the cursor reversed, and a diamond where it is not shown.
+    fn heading(self, buf: &mut Buffer, pane: Rect, at: u16, step: usize, snapshot: &Snapshot) {
+        let number = format!(" {} ", step + 1);
+        let style = if step == snapshot.cursor {
+            Style::new().add_modifier(Modifier::REVERSED)
+        } else {
+            dim()
+        };
+        let indent = self.side.saturating_sub(width(&number)) / 2;
+        text(buf, pane, at + indent, 0, &number, style);
+        let beyond = snapshot.cursor.saturating_sub(step);
+        if beyond > 0 && beyond < self.every {
+            let first = at + indent + width(&number);
+            let next = at + self.side + 1 + indent;
+            let room = usize::from(next.saturating_sub(first + 1));
+            let column = first + ((beyond - 1) * room / (self.every - 1)) as u16;
+            put(buf, pane, column, 0, '◆', strong());
+        }
+    }
+}
+
+impl Row {
+    fn label(self, buf: &mut Buffer, pane: Rect, row: u16, (rows, face): (u16, &Face)) {
+        let prediction = strong().patch(face.depth.ink(PREDICTION));
+        let range = format!("±{ERROR_RANGE:.2}");
+        let (name, style, below) = match self {
+            Self::Truth => ("truth", strong(), ""),
+            Self::Belief => ("belief", strong(), ""),
+            Self::Prediction => ("prediction", prediction, ""),
+            Self::Model => ("belief│", strong(), "prediction"),
+            Self::Error => ("error", strong(), range.as_str()),
+        };
+        text(buf, pane, 0, row, name, style);
+        if rows >= 2 && !below.is_empty() {
+            let style = if self == Self::Model { prediction } else { dim() };
+            text(buf, pane, 0, row + 1, below, style);
+        }
+    }
+
+    fn image(self, cell: &StripCell, start: usize) -> Option<Raster> {
+        let model = if cell.step <= start {
+            &cell.belief
+        } else {
+            &cell.prediction
+        };
+        let frame = match self {
+            Self::Truth => Some(&cell.truth),
+            Self::Belief => cell.belief.as_ref(),
+            Self::Prediction => cell.prediction.as_ref(),
+            Self::Model => model.as_ref(),
+            Self::Error => return difference(model.as_ref()?, &cell.truth),
+        };
+        frame.map(|frame| Raster::from(&**frame))
+    }
+}
+
+/// An image minus the truth, as colours show it; none where the sizes differ.
+fn difference(shown: &Frame, truth: &Frame) -> Option<Raster> {
+    let same = (shown.width, shown.height) == (truth.width, truth.height);
+    let signed = |(&a, &b): (&u8, &u8)| {
+        let part = (f32::from(a) - f32::from(b)) / (255.0 * ERROR_RANGE);
+        part.clamp(-1.0, 1.0)
+    };
+    same.then(|| Raster {
+        width: shown.width,
+        height: shown.height,
+        values: std::iter::zip(&shown.pixels, &truth.pixels).map(signed).collect(),
+        signed: true,
+    })
 }
 
 fn every_text(every: usize) -> String {
@@ -125,5 +245,17 @@ fn every_text(every: usize) -> String {
         2 => "every 2nd".to_owned(),
         3 => "every 3rd".to_owned(),
         _ => format!("every {every}th"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_low_pane_lets_belief_and_prediction_share_a_row() {
+        assert_eq!(Grid::with_error((118, 25), 16).rows, FOUR);
+        let low = Grid::with_error((78, 13), 16);
+        assert_eq!((low.rows, low.side, low.every), (SHARED, 8, 3));
     }
 }

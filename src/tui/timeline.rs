@@ -10,6 +10,8 @@
 //! ```
 //! Rows share one axis, a step never less than a column unless the header says how many.
 
+mod events;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -31,6 +33,7 @@ const PSNR_RANGE: (f32, f32) = (10.0, 40.0);
 /// Rows of each part of a timeline, and the blank ones between them.
 #[derive(Default)]
 struct Parts {
+    events: u16,
     force: u16,
     share: u16,
     psnr: u16,
@@ -40,6 +43,8 @@ struct Parts {
 impl Parts {
     /// Divides the rows below header and track; more than makes a calm picture is left blank.
     fn of(rows: u16) -> Self {
+        let events = u16::from(rows >= 4);
+        let rows = rows - events;
         let (psnr, gap) = match rows {
             0..=4 => (0, 0),
             5..=8 => (1, 0),
@@ -49,6 +54,7 @@ impl Parts {
         let rest = rows - 2 * psnr - 2 * gap;
         let force = (rest / 3).max(u16::from(rest > 0)).min(4);
         Self {
+            events,
             force,
             share: (rest - force).min(8),
             psnr,
@@ -67,10 +73,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if pane.height < 2 || axis.steps == 0 {
         return;
     }
-    track(buf, pane, 1, axis, snapshot, face);
-
     let parts = Parts::of(pane.height - 2);
-    let (force_rows, rest) = rows(rows(pane, 2).1, parts.force);
+    track(buf, pane, 1, axis, snapshot, face);
+    let (event_rows, rest) = rows(rows(pane, 2).1, parts.events);
+    events::row(buf, event_rows, axis, snapshot, face);
+    let (force_rows, rest) = rows(rest, parts.force);
     let (share_rows, rest) = rows(rows(rest, parts.gap).1, parts.share);
     let (belief_rows, rest) = rows(rows(rest, parts.gap).1, parts.psnr);
     let (prediction_rows, _) = rows(rest, parts.psnr);
@@ -179,19 +186,13 @@ fn track(buf: &mut Buffer, pane: Rect, row: u16, axis: Axis, snapshot: &Snapshot
             put(buf, pane, axis.column(step) + i, row, fill, style);
         }
     }
-    for &step in snapshot
-        .episode
-        .iter()
-        .flat_map(|episode| &episode.flagged_steps)
-    {
-        if step < axis.steps {
-            put(buf, pane, axis.column(step), row, '!', strong());
-        }
-    }
     // The bar closes the last step that was seen.
     let boundary = axis.column(start) + axis.columns - 1;
     if start < axis.steps {
         put(buf, pane, boundary, row, '┃', strong());
+    }
+    if Parts::of(pane.height.saturating_sub(2)).events == 0 {
+        events::over_track(buf, pane, row, axis, snapshot, face);
     }
     let middle = (axis.columns - 1) / 2;
     put(
@@ -209,7 +210,10 @@ fn track(buf: &mut Buffer, pane: Rect, row: u16, axis: Axis, snapshot: &Snapshot
     } else {
         "past".to_owned()
     };
-    right(buf, pane, pane.width, row, &seen, dim());
+    // What the cursor covers is said beside the track.
+    let start = right(buf, pane, pane.width, row, &seen, dim());
+    let here: String = events::symbols(snapshot, snapshot.cursor).into_iter().collect();
+    right(buf, pane, start.saturating_sub(1), row, &here, strong());
 }
 
 fn force(buf: &mut Buffer, pane: Rect, axis: Axis, snapshot: &Snapshot) {
@@ -321,8 +325,8 @@ mod tests {
     fn parts_fill_their_rows_up_to_a_calm_size() {
         for rows in 0..40 {
             let parts = Parts::of(rows);
-            let used = parts.force + parts.share + 2 * (parts.psnr + parts.gap);
-            assert!(used <= rows && (used == rows || rows > 17), "{rows}");
+            let used = parts.events + parts.force + parts.share + 2 * (parts.psnr + parts.gap);
+            assert!(used <= rows && (used == rows || rows > 18), "{rows}");
         }
     }
 }

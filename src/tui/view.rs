@@ -59,14 +59,16 @@ pub enum Pane {
     Series,
     /// Spread of the rollout over its steps, in three ways.
     Spread,
-    /// Samples of the rollout on the table.
-    Fan,
+    /// PSNR of belief and prediction over the horizon.
+    Quality,
     /// A sample, the mean of samples, and their deviation as images.
     Samples,
     /// What each sensor pulls the position by.
     Pulls,
-    /// Every episode with its scores.
-    Episodes,
+    /// What the consistency of a split comes to, in words.
+    Verdict,
+    /// The same in numbers.
+    Numbers,
     /// What is claimed against what is held.
     Coverage,
     /// NEES at each horizon.
@@ -109,15 +111,15 @@ impl View {
     /// The panes that Tab goes through; the first has the focus when the view opens.
     pub fn panes(self) -> &'static [Pane] {
         use Pane::{
-            Coverage, Dependence, Dims, Divergence, Episodes, Experts, Fan, Frames, Horizons,
+            Coverage, Dependence, Dims, Divergence, Experts, Frames, Horizons, Numbers, Quality, Strip, Verdict,
             Latents, Pairs, Position, Pulls, Samples, Series, Sets, Spread, Timeline,
         };
         match self {
             Self::Overview => &[Frames, Experts, Latents, Position, Timeline],
             Self::Fuse => &[Experts, Pairs, Dims, Divergence, Latents, Series, Timeline],
-            Self::Predict => &[Spread, Fan, Samples, Frames, Timeline],
+            Self::Predict => &[Strip, Quality, Spread, Samples, Timeline],
             Self::Position => &[Position, Pulls, Experts, Timeline],
-            Self::Consistency => &[Coverage, Horizons, Dependence, Episodes, Timeline],
+            Self::Consistency => &[Verdict, Horizons, Coverage, Numbers, Dependence, Timeline],
             Self::Lattice => &[Sets, Experts, Timeline],
         }
     }
@@ -135,7 +137,7 @@ impl View {
 impl Pane {
     /// All there are.
     #[cfg(test)]
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 20] = [
         Self::Frames,
         Self::Strip,
         Self::Experts,
@@ -147,10 +149,11 @@ impl Pane {
         Self::Divergence,
         Self::Series,
         Self::Spread,
-        Self::Fan,
+        Self::Quality,
         Self::Samples,
         Self::Pulls,
-        Self::Episodes,
+        Self::Verdict,
+        Self::Numbers,
         Self::Coverage,
         Self::Horizons,
         Self::Dependence,
@@ -171,10 +174,11 @@ impl Pane {
             Self::Divergence => "KL",
             Self::Series => "series",
             Self::Spread => "spread",
-            Self::Fan => "fan",
+            Self::Quality => "PSNR",
             Self::Samples => "samples",
             Self::Pulls => "pulls",
-            Self::Episodes => "episodes",
+            Self::Verdict => "verdict",
+            Self::Numbers => "numbers",
             Self::Coverage => "coverage",
             Self::Horizons => "horizons",
             Self::Dependence => "dependence",

@@ -19,8 +19,8 @@ use crate::tui::view::Pane;
 
 /// Images in the frame row.
 const IMAGES: u16 = 4;
-/// Rows of the timeline: header, track, force, two of shares.
-const TIMELINE_ROWS: u16 = 5;
+/// Rows of the timeline: header, track, events, force, two of shares.
+const TIMELINE_ROWS: u16 = 6;
 /// Rows of the smallest stacks of shares per latent dimension.
 const SHARE_ROWS: u16 = 2;
 
@@ -139,7 +139,7 @@ mod tests {
             ..Shape::default()
         };
         let layout = Layout::of(Rect::new(0, 0, 80, 24), shape);
-        assert_eq!(layout.get(Pane::Frames), Rect::new(1, 1, 78, 10));
+        assert_eq!(layout.get(Pane::Frames), Rect::new(1, 1, 78, 9));
         assert_eq!(layout.get(Pane::Timeline).height, TIMELINE_ROWS);
         assert!(!layout.get(Pane::Position).is_empty() && !layout.get(Pane::Dims).is_empty());
         assert!(layout.get(Pane::Latents).is_empty() && layout.get(Pane::Strip).is_empty());

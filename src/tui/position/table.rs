@@ -1,0 +1,186 @@
+//! The table plane, large: paths and ellipses as in the overview, and who pulls the belief where.
+//!
+//! ```text
+//! table cm ─────────────────────── pulls ×10
+//! 10        ╌╌╌×╌╌╌
+//!         ────●──  (V)
+//!  5    D━━V   H
+//!      0         5        10
+//! ╌ truth  ─ belief  ┈ prediction  + tip  1σ solid 39 %, 95 % dashed
+//! D─V─H pulls ×10, sum Σ  (V) without V
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+use super::super::braille::{Canvas, Stroke};
+use super::super::face::Face;
+use super::super::paint::{below_title, put, text, title};
+use super::super::plane::{Extent, Plane};
+use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::view::Pane;
+use super::super::words::{Entry, legend, legend_rows};
+use super::arrows::{Arrows, ghosts};
+use super::{at_step, dots, ellipses, marks, masses, off, paths, window};
+use crate::modality::Expert;
+use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
+use crate::session::snapshot::{PositionView, Snapshot};
+
+/// Rows of the legend at most.
+const LEGEND: u16 = 3;
+
+/// Draws the plane with its legend.
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Position);
+    if pane.is_empty() {
+        return;
+    }
+    let Some(position) = &snapshot.position else {
+        title(buf, pane, "table", "", focused);
+        let below = below_title(pane);
+        text(buf, below, 0, 0, "no probe or no belief yet", dim());
+        return;
+    };
+    title(buf, pane, "table cm", &off(position), focused);
+    let inner = below_title(pane);
+    let other = snapshot.other.as_ref().and_then(|other| other.position.as_ref());
+    let extent = Extent::of(position).map(|extent| extent.and(other.and_then(Extent::of)));
+    // The window does not depend on what the legend says, or the picture would jump.
+    let room = LEGEND.min(inner.height / 4);
+    let Some((plane, view)) = window(inner, room, extent) else {
+        return;
+    };
+    view.axes(buf, inner);
+    let arrows = Arrows::of(snapshot, &view);
+    let fan = snapshot
+        .spread
+        .as_ref()
+        .filter(|_| snapshot.sampling.shown || face.zoomed);
+    let mut canvas = Canvas::new(plane.width, plane.height);
+    for path in fan.iter().flat_map(|spread| &spread.fan) {
+        let path: Vec<(f32, f32)> = path.iter().map(|&point| view.dot(point)).collect();
+        let ink = dim().patch(face.depth.ink(PREDICTION));
+        canvas.path(&path, Stroke::Sparse, ink);
+    }
+    let recorded = dots(&view, &position.recorded_controls);
+    canvas.path(&recorded, Stroke::Sparse, dim());
+    if let Some(other) = other {
+        let ink = face.depth.ink(OTHER);
+        canvas.path(&dots(&view, &other.prediction), Stroke::Sparse, ink);
+        canvas.path(&dots(&view, &other.belief), Stroke::DashDot, ink);
+    }
+    paths(&mut canvas, &view, position, face);
+    ellipses(&mut canvas, &view, position, snapshot.cursor, face);
+    if let Some(arrows) = &arrows {
+        arrows.lines(&mut canvas, face);
+    }
+    canvas.draw(buf, plane);
+    if let Some(other) = other {
+        other_marks(buf, plane, &view, other, snapshot.cursor, face);
+    }
+    if let Some(now) = at_step(&position.recorded_controls, snapshot.cursor)
+        && let Some((column, row)) = view.cell(view.dot([now.x, now.y]))
+    {
+        put(buf, plane, column, row, 'r', strong());
+    }
+    let taken = arrows.as_ref().map(|arrows| arrows.cells(&view)).unwrap_or_default();
+    ghosts(buf, (plane, &taken), &view, snapshot, face);
+    marks(buf, plane, &view, position, snapshot.cursor, face);
+    if let Some(arrows) = &arrows {
+        arrows.draw(buf, plane, &view, face);
+    }
+
+    let cut = at_step(&position.belief, snapshot.cursor)
+        .is_some_and(|now| view.cuts(&view.ellipse(&now, SIGMAS_OF_95_PERCENT)));
+    let said = Said {
+        arrows: arrows.as_ref().map(|arrows| arrows.factor),
+        samples: fan.map(|spread| spread.samples),
+        cut,
+    };
+    said.legend(buf, inner, room, snapshot, face);
+}
+
+fn other_marks(
+    buf: &mut Buffer,
+    pane: Rect,
+    view: &Plane,
+    other: &PositionView,
+    cursor: usize,
+    face: &Face,
+) {
+    let ink = strong().patch(face.depth.ink(OTHER));
+    for (path, symbol) in [(&other.prediction, '◇'), (&other.belief, '○')] {
+        if let Some(now) = at_step(path, cursor)
+            && let Some((column, row)) = view.cell(view.dot([now.x, now.y]))
+        {
+            put(buf, pane, column, row, symbol, ink);
+        }
+    }
+}
+
+/// What the legend has to explain besides paths and ellipses.
+struct Said {
+    /// Factor of the arrows, where there are some.
+    arrows: Option<f32>,
+    /// Samples of the fan, where it is drawn.
+    samples: Option<usize>,
+    /// Whether the ellipse at the cursor is wider than the plane.
+    cut: bool,
+}
+
+impl Said {
+    fn legend(&self, buf: &mut Buffer, inner: Rect, rows: u16, snapshot: &Snapshot, face: &Face) {
+        let prediction = face.depth.ink(PREDICTION);
+        let other = face.depth.ink(OTHER);
+        let masses = if self.cut {
+            format!("{}, wider than this", masses())
+        } else {
+            masses()
+        };
+        let letters: String = snapshot
+            .experts
+            .iter()
+            .map(|view| view.expert)
+            .filter(|&expert| expert != Expert::Prior)
+            .map(|expert| format!("─{}", expert.letter()))
+            .collect();
+        let chain = format!("{}{letters}", Expert::Prior.letter());
+        let pulls = match self.arrows {
+            Some(factor) if factor > 1.0 => format!("pulls ×{factor}, sum Σ"),
+            _ => "pulls, sum ●".to_owned(),
+        };
+        let samples = self.samples.map(|samples| format!("of {samples} samples"));
+        let name = snapshot
+            .other
+            .as_ref()
+            .and_then(|other| snapshot.models.get(other.model))
+            .map(|model| (format!("{} belief", model.name), "prediction"));
+        let mut entries: Vec<Entry> = vec![
+            ("╌×", dim(), "truth"),
+            ("─●", Style::new(), "belief"),
+            ("┈◆", prediction, "prediction"),
+            ("+", Style::new(), "tip"),
+        ];
+        if self.arrows.is_some() {
+            entries.push((&chain, strong(), &pulls));
+            entries.push(("(V)", dim(), "without V"));
+        }
+        entries.push(("○", Style::new(), &masses));
+        if let Some((belief, prediction)) = &name {
+            entries.push(("╴·○", other, belief));
+            entries.push(("· ◇", other, prediction));
+        }
+        if snapshot.control_edit.is_some() {
+            entries.push(("· r", dim(), "recorded controls"));
+        }
+        if let Some(samples) = &samples {
+            entries.push(("···", prediction, samples));
+        }
+        let first = inner.height - rows;
+        let lines = legend_rows(&entries, inner.width);
+        for (i, line) in lines.into_iter().take(usize::from(rows)).enumerate() {
+            legend(buf, inner, first + i as u16, line);
+        }
+    }
+}
