@@ -15,6 +15,7 @@ pub mod fusing;
 pub mod input;
 pub mod keymap;
 pub mod keys;
+pub mod palette;
 pub mod playback;
 pub mod predict;
 pub mod renew;
@@ -34,7 +35,7 @@ mod worker;
 #[cfg(test)]
 mod tests;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
@@ -50,6 +51,7 @@ use worker::{Answer, Opened, Request, Shared, Target};
 pub use worker::{Found, THREAD};
 
 use crate::episode::EpisodeSource;
+use crate::measure::failure::Order;
 
 /// How soon to look again while something is computed, for a face without a waker.
 const POLL: Duration = Duration::from_millis(8);
@@ -68,6 +70,14 @@ pub struct Session {
     playback: Playback,
     settings: Settings,
     history: History,
+    /// The model beside the one shown, by its index.
+    compare: Option<usize>,
+    /// Marked steps from 0 of each episode by its name.
+    marks: BTreeMap<String, BTreeSet<usize>>,
+    /// First selected step from 0, and the last one once it is chosen.
+    selection: Option<(usize, Option<usize>)>,
+    /// What makes a failure.
+    order: Order,
     /// Keys of a restored state string that mean nothing here, to be written back.
     unknown_keys: Vec<(String, String)>,
     /// What waits for the episode to be read.
@@ -116,6 +126,10 @@ impl Session {
             playback: Playback::default(),
             settings: Settings::default(),
             history: History::default(),
+            compare: None,
+            marks: BTreeMap::new(),
+            selection: None,
+            order: Order::default(),
             unknown_keys: Vec::new(),
             pending: VecDeque::new(),
             message: None,

@@ -11,6 +11,7 @@
 //! timeline          step ━━━━━━┃╌╌╌╌◆╌╌╌╌╌╌╌──                  0
 //!                   force  ▂▃▄▅▆▇█▇▆▅▄▃▂  3.2 N                  -3           12
 //!                   share ▓▓▓▓▒▒▒▒░░░░
+//! palette           commands to choose from while a line is typed, over what is above the last line
 //! status::message   message, prompt, warning or a few keys
 //! ```
 //! One file a pane; [`layout`] says where each stands, [`face`] holds what only this face knows, [`app`] turns keys
@@ -31,6 +32,7 @@ mod help;
 mod image;
 mod latents;
 mod paint;
+mod palette;
 mod position;
 mod print;
 mod shares;
@@ -89,6 +91,9 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
         timeline::draw(buf, panes.timeline, snapshot, face);
     }
     status::message(buf, panes.message, snapshot, face);
+    if let Some(view) = &face.palette {
+        palette::draw(buf, palette::pane(screen, panes.message), view);
+    }
     if let Some(page) = face.help {
         help::draw(buf, screen, page);
     }

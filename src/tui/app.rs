@@ -82,8 +82,10 @@ impl App {
             }
             None => Flow::Go,
         };
+        let snapshot = self.session.snapshot();
         self.face.expert = self.input.focused_expert();
-        self.face.prompt = self.input.hint(&self.session.snapshot());
+        self.face.prompt = self.input.hint(&snapshot);
+        self.face.palette = self.input.palette(&snapshot);
         flow
     }
 
@@ -112,6 +114,11 @@ impl App {
                 };
                 face.zoomed = !last;
             }
+            FaceCommand::View(name) => self.not_yet(&format!("the view {name}")),
+            FaceCommand::Difference => self.not_yet("the difference of two models"),
+            FaceCommand::Blink => self.not_yet("blinking"),
+            FaceCommand::Wipe => self.not_yet("the wipe"),
+            FaceCommand::Episodes => self.not_yet("the list of episodes"),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -121,6 +128,13 @@ impl App {
             }
         }
         Flow::Go
+    }
+
+    fn not_yet(&mut self, what: &str) {
+        self.session.say(Message {
+            error: true,
+            text: format!("the terminal does not draw {what} yet"),
+        });
     }
 
     /// Takes what the mouse did at a cell of the screen.

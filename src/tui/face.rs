@@ -2,6 +2,7 @@
 
 use super::pixels::Pixels;
 use super::theme::Depth;
+use crate::session::palette::PaletteView;
 
 /// A pane that can have the focus and fill the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -49,6 +50,8 @@ pub struct Face {
     pub help: Option<usize>,
     /// What is being typed, with what stands before it; none when nothing is.
     pub prompt: Option<String>,
+    /// What can be chosen while a line is typed.
+    pub palette: Option<PaletteView>,
     /// The expert whose Gaussian is shown beside the belief, by its place in the list.
     pub expert: usize,
     /// Colours of the terminal.
