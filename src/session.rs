@@ -93,7 +93,7 @@ pub struct Session {
 
 enum Pending {
     Command(Command),
-    Restoration(Restoration),
+    Restoration(Box<Restoration>),
 }
 
 /// What a generation of requests asks for; the cursor only orders the work.
@@ -278,7 +278,7 @@ impl Session {
             for pending in std::mem::take(&mut self.pending) {
                 match pending {
                     Pending::Command(command) => self.perform(command),
-                    Pending::Restoration(restoration) => self.finish(restoration),
+                    Pending::Restoration(restoration) => self.finish(*restoration),
                 }
             }
         } else if failed {

@@ -42,7 +42,8 @@ impl Session {
         if self.opened().is_some() {
             self.finish(restoration);
         } else {
-            self.pending.push_back(Pending::Restoration(restoration));
+            let restoration = Pending::Restoration(Box::new(restoration));
+            self.pending.push_back(restoration);
         }
     }
 

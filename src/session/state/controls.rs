@@ -1,5 +1,7 @@
 //! Edited controls: `from:6,rotate:30,scale:0.5,mirror`.
 
+use std::fmt::Write;
+
 use super::names::count;
 use crate::session::settings::{ControlEdit, SCALES};
 
@@ -7,10 +9,11 @@ use crate::session::settings::{ControlEdit, SCALES};
 pub fn text(edit: &ControlEdit) -> String {
     let mut text = format!("from:{}", edit.from + 1);
     if edit.rotate_deg != 0.0 {
-        text += &format!(",rotate:{}", edit.rotate_deg);
+        // Writing to a string cannot fail.
+        let _ = write!(text, ",rotate:{}", edit.rotate_deg);
     }
     if edit.scale.total_cmp(&1.0).is_ne() {
-        text += &format!(",scale:{}", edit.scale);
+        let _ = write!(text, ",scale:{}", edit.scale);
     }
     if edit.mirror {
         text += ",mirror";
