@@ -16,6 +16,7 @@ pub mod input;
 pub mod keymap;
 pub mod keys;
 pub mod known;
+pub mod palette;
 pub mod playback;
 pub mod predict;
 pub mod renew;
@@ -113,7 +114,7 @@ pub struct Session {
 enum Pending {
     Command(Command),
     Seek(usize),
-    Restoration(Restoration),
+    Restoration(Box<Restoration>),
 }
 
 /// What a generation of requests asks for. The cursor only orders the work, unless something is looked at that is
@@ -341,7 +342,7 @@ impl Session {
                 match pending {
                     Pending::Command(command) => self.perform(command),
                     Pending::Seek(step) => self.playback.seek(step, steps),
-                    Pending::Restoration(restoration) => self.finish(restoration),
+                    Pending::Restoration(restoration) => self.finish(*restoration),
                 }
             }
         } else if failed {

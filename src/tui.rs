@@ -11,6 +11,7 @@
 //! timeline          step ━━━━━━┃╌╌╌╌◆╌╌╌╌╌╌╌──                  0
 //!                   force  ▂▃▄▅▆▇█▇▆▅▄▃▂  3.2 N                  -3           12
 //!                   share ▓▓▓▓▒▒▒▒░░░░
+//! palette           commands to choose from while a line is typed, over what is above the last line
 //! status::message   message, prompt, warning or a few keys
 //! ```
 //! This is the overview; [`view`] lists the other views and the panes of each. One file a pane; [`layout`] says where
@@ -36,6 +37,7 @@ mod image;
 mod latents;
 mod lattice;
 mod paint;
+mod palette;
 mod plane;
 mod plot;
 mod position;
@@ -50,8 +52,6 @@ mod words;
 
 #[cfg(test)]
 mod fixture;
-#[cfg(test)]
-mod dump;
 #[cfg(test)]
 mod tests;
 
@@ -85,6 +85,9 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
     status::message(buf, layout.message, snapshot, face);
     if let Some(list) = &face.episodes {
         episodes::draw(buf, screen, snapshot, face, list);
+    }
+    if let Some(view) = &face.palette {
+        palette::draw(buf, palette::pane(screen, layout.message), view);
     }
     if let Some(page) = face.help {
         help::draw(buf, screen, page);

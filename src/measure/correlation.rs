@@ -22,7 +22,7 @@ const FEW: usize = 20;
 const LEAST_INFLATION: f64 = 1e-6;
 
 /// How two experts' position errors go together.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
     /// Index of one expert.
     pub a: usize,

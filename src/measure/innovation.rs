@@ -14,7 +14,7 @@ use super::gaussian::{self, Factor, Gaussian};
 use super::spread;
 
 /// Normalised innovation squared of one sensor: it against the prediction (D8).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Nis {
     /// `νᵀ (R + Σ₀)⁻¹ ν` with `ν = μᵢ − μ₀` and `R = Σᵢ/α`, against the head's own Σ₀. The head says the noise of
     /// one step and not the last posterior's spread, so this reads above the bounds even for a right model.
@@ -76,7 +76,7 @@ pub fn predicted_covariance(
 }
 
 /// Two experts against each other (D9).
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Disagreement {
     /// Index of the one.
     pub a: usize,
@@ -124,7 +124,7 @@ pub fn disagreements(factors: &[Factor], active: &[bool]) -> Vec<Disagreement> {
 }
 
 /// How much agreement a product forces (D10). The belief is sharp also where this is large, so it belongs beside σ*.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// `Q = Σᵢ αᵢ (μᵢ − μ*)ᵀ Tᵢ (μᵢ − μ*)`.
     pub energy: f32,

@@ -1,10 +1,19 @@
 //! From keys to actions: the table, and the few keys that change what the next ones mean.
+//!
+//! Inside a mode its own keys are read by its file; Esc and Enter end it, and so does any other key, which then does
+//! what it always does.
+
+mod adjust;
+mod controls;
+mod corrupt;
+mod typing;
 
 use super::command::Command;
 use super::keymap::{FaceCommand, Meaning, Mode, lookup};
 use super::keys::Key;
-use super::prompt;
+use super::palette::PaletteView;
 use super::snapshot::Snapshot;
+use typing::Typing;
 
 /// What a face has to do for a key.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +35,23 @@ pub enum Action {
 #[derive(Clone, Debug, Default)]
 pub struct Input {
     mode: Option<Mode>,
-    line: String,
+    typing: Typing,
+    /// The expert that `a` and `x` are about.
     focused: usize,
+    /// Which of its modalities `x` damages, by its place among them.
+    modality: usize,
+    /// The step from which `r` edits the controls.
+    from: usize,
+}
+
+/// What a mode makes of a key.
+enum Taken {
+    /// This.
+    Action(Action),
+    /// Nothing that anyone else has to do.
+    Quietly,
+    /// It is not one of its keys.
+    Not,
 }
 
 impl Input {
@@ -36,18 +60,31 @@ impl Input {
         if key.name() == "<c-c>" {
             return Some(Action::Face(FaceCommand::Quit));
         }
-        match self.mode {
-            None => self.plain(key, snapshot),
-            Some(Mode::Prompt) => self.prompt(key, snapshot),
-            Some(Mode::Solo) => {
+        let taken = match self.mode {
+            None => Taken::Not,
+            Some(Mode::Prompt) => return self.type_key(key, snapshot),
+            Some(Mode::Solo) => digit(key).map_or(Taken::Not, |position| {
                 self.mode = None;
-                match digit(key) {
-                    Some(position) => Some(Action::Session(Command::Solo(position))),
-                    None if key.name() == "<esc>" => None,
-                    None => self.plain(key, snapshot),
+                Taken::Action(Action::Session(Command::Solo(position)))
+            }),
+            Some(Mode::Temper) => self.temper(key, snapshot),
+            Some(Mode::Context) => adjust::by(key).map(Command::Context).into(),
+            Some(Mode::Horizon) => adjust::by(key).map(Command::Horizon).into(),
+            Some(Mode::Samples) => adjust::samples(key, snapshot),
+            Some(Mode::Corrupt) => self.corrupt(key, snapshot),
+            Some(Mode::Controls) => self.controls(key, snapshot),
+        };
+        match taken {
+            Taken::Action(action) => Some(action),
+            Taken::Quietly => None,
+            Taken::Not => {
+                let ended = self.mode.take().is_some();
+                let ends = matches!(key.name(), "<esc>" | "<enter>");
+                if ended && ends {
+                    return None;
                 }
+                self.plain(key, snapshot)
             }
-            Some(mode) => self.adjust(mode, key, snapshot),
         }
     }
 
@@ -56,34 +93,39 @@ impl Input {
         self.mode
     }
 
-    /// The line to show while a key is awaited.
+    /// The line to show while a key is awaited: what is changed, then the keys, the most useful first.
     pub fn hint(&self, snapshot: &Snapshot) -> Option<String> {
         let hint = match self.mode? {
-            Mode::Prompt => format!(":{}", self.line),
+            Mode::Prompt => format!(":{}", self.typing.line),
             Mode::Solo => "only which sensor? a digit".to_owned(),
-            Mode::Context => format!("context {}: - = change it, Esc ends", snapshot.context),
-            Mode::Horizon => format!("horizon {}: - = change it, Esc ends", snapshot.horizon),
-            Mode::Temper => match snapshot.experts.get(self.focused) {
-                Some(view) => {
-                    let name = view.expert.name();
-                    format!(
-                        "α of {name} {}: - = change it, a digit picks another, Esc ends",
-                        view.alpha
-                    )
-                }
-                None => "α of which expert? a digit".to_owned(),
-            },
+            Mode::Context => format!("context {} | - = change it, Esc ends", snapshot.context),
+            Mode::Horizon => format!("horizon {} | - = change it, Esc ends", snapshot.horizon),
+            Mode::Samples => {
+                let count = snapshot.sampling.count;
+                format!("{count} samples | - = half, twice as many, Esc ends")
+            }
+            Mode::Temper => self.temper_hint(snapshot),
+            Mode::Corrupt => self.corrupt_hint(snapshot),
+            Mode::Controls => self.controls_hint(snapshot),
         };
         Some(hint)
     }
 
-    /// The expert that `a` tempers: the last one whose digit was pressed.
+    /// What can be chosen while a line is typed.
+    pub fn palette(&self, snapshot: &Snapshot) -> Option<PaletteView> {
+        (self.mode == Some(Mode::Prompt)).then(|| self.typing.palette(snapshot))
+    }
+
+    /// The expert that `a` tempers and `x` damages: the last one whose digit was pressed.
     pub fn focused_expert(&self) -> usize {
         self.focused
     }
 
-    /// Makes `a` temper this one, where a face has other ways to point at an expert.
+    /// Makes `a` and `x` about this one, where a face has other ways to point at an expert.
     pub fn focus_expert(&mut self, position: usize) {
+        if self.focused != position {
+            self.modality = 0;
+        }
         self.focused = position;
     }
 
@@ -91,18 +133,15 @@ impl Input {
         match lookup(key.name())?.meaning.clone() {
             Meaning::Session(command) => Some(Action::Session(command)),
             Meaning::Face(command) => Some(Action::Face(command)),
-            Meaning::ExpertDigit => {
-                self.focused = digit(key)?;
-                // The prior stands after the sensors, but its key is not the next digit.
-                let sensors = snapshot.experts.len().saturating_sub(1);
-                if self.focused < sensors {
-                    return Some(Action::Session(Command::ToggleExpert(self.focused)));
+            Meaning::ExpertDigit => Some(match sensor(key, snapshot)? {
+                Ok(position) => {
+                    self.focus_expert(position);
+                    Action::Session(Command::ToggleExpert(position))
                 }
-                let text = format!("there are {sensors} sensor experts; 9 is the prior");
-                Some(Action::Explain { error: true, text })
-            }
+                Err(complaint) => complaint,
+            }),
             Meaning::Prior => {
-                self.focused = snapshot.experts.len().saturating_sub(1);
+                self.focus_expert(snapshot.experts.len().saturating_sub(1));
                 Some(Action::Session(Command::ToggleExpert(self.focused)))
             }
             Meaning::Model(by) => {
@@ -120,62 +159,23 @@ impl Input {
             }
             Meaning::Mode(mode) => {
                 self.mode = Some(mode);
-                self.line.clear();
+                self.from = snapshot
+                    .control_edit
+                    .map_or(snapshot.cursor, |edit| edit.from);
+                None
+            }
+            Meaning::Line(start) => {
+                self.mode = Some(Mode::Prompt);
+                self.typing = Typing::from(start);
                 None
             }
         }
     }
+}
 
-    fn prompt(&mut self, key: &Key, snapshot: &Snapshot) -> Option<Action> {
-        match key.name() {
-            "<esc>" => self.mode = None,
-            "<backspace>" if self.line.pop().is_none() => self.mode = None,
-            "<enter>" => {
-                self.mode = None;
-                let line = std::mem::take(&mut self.line);
-                return (!line.trim().is_empty()).then(|| prompt::action(&line, snapshot));
-            }
-            _ => self.line.extend(key.as_char()),
-        }
-        None
-    }
-
-    /// `-` and `=` change a number; any other key ends the mode and does what it always does.
-    fn adjust(&mut self, mode: Mode, key: &Key, snapshot: &Snapshot) -> Option<Action> {
-        let by = match key.name() {
-            "-" => -1,
-            "=" | "+" => 1,
-            "<esc>" | "<enter>" => {
-                self.mode = None;
-                return None;
-            }
-            _ => 0,
-        };
-        match (mode, by) {
-            (Mode::Temper, 0)
-                if key
-                    .as_char()
-                    .is_some_and(|c| c.is_ascii_digit() && c != '0') =>
-            {
-                let prior = snapshot.experts.len().saturating_sub(1);
-                self.focused = if key.name() == "9" {
-                    prior
-                } else {
-                    digit(key)?.min(prior)
-                };
-                None
-            }
-            (_, 0) => {
-                self.mode = None;
-                self.plain(key, snapshot)
-            }
-            (Mode::Context, by) => Some(Action::Session(Command::Context(by))),
-            (Mode::Horizon, by) => Some(Action::Session(Command::Horizon(by))),
-            (_, by) => {
-                let (expert, tenths) = (self.focused, by);
-                Some(Action::Session(Command::Temper { expert, tenths }))
-            }
-        }
+impl From<Option<Command>> for Taken {
+    fn from(command: Option<Command>) -> Self {
+        command.map_or(Self::Not, |command| Self::Action(Action::Session(command)))
     }
 }
 
@@ -185,98 +185,16 @@ fn digit(key: &Key) -> Option<usize> {
     (1..=8).contains(&digit).then(|| digit as usize - 1)
 }
 
-#[cfg(test)]
-#[expect(
-    clippy::unwrap_used,
-    clippy::float_cmp,
-    reason = "a test may stop here; α is compared as it was set"
-)]
-mod tests {
-    use std::sync::Arc;
-    use std::time::Duration;
-
-    use super::*;
-    use crate::session::Session;
-    use crate::session::fake::{FakePredictor, FakeSource};
-    use crate::session::keys::parse_script;
-
-    /// Presses the keys of a script; returns the session's snapshot and what it was not for the session to do.
-    fn press(script: &str) -> (Snapshot, Vec<Action>, Input) {
-        let mut session = Session::new(
-            Arc::new(FakeSource::new(3)),
-            vec![Arc::new(FakePredictor::three())],
-        );
-        let (mut input, mut others) = (Input::default(), Vec::new());
-        for key in parse_script(script).unwrap() {
-            assert!(session.wait_idle(Duration::from_secs(20)));
-            match input.press(&key, &session.snapshot()) {
-                Some(Action::Session(command)) => session.apply(command),
-                other => others.extend(other),
-            }
-        }
-        assert!(session.wait_idle(Duration::from_secs(20)));
-        (session.snapshot(), others, input)
+/// The sensor of a digit; why there is none, for the prior stands after the sensors but its key is not the next digit.
+fn sensor(key: &Key, snapshot: &Snapshot) -> Option<Result<usize, Action>> {
+    let position = digit(key)?;
+    let sensors = snapshot.experts.len().saturating_sub(1);
+    if position < sensors {
+        return Some(Ok(position));
     }
-
-    fn alphas(script: &str) -> Vec<f32> {
-        press(script)
-            .0
-            .experts
-            .iter()
-            .map(|view| view.alpha)
-            .collect()
-    }
-
-    #[test]
-    fn plain_keys_follow_the_table() {
-        let (snapshot, others, _) = press("lll<right>h 2 ] ?");
-        assert_eq!((snapshot.cursor, snapshot.episode_index), (3, 1));
-        assert_eq!(snapshot.experts[1].alpha, 0.0);
-        assert_eq!(others, [Action::Face(FaceCommand::Help)]);
-    }
-
-    #[test]
-    fn digits_switch_and_nine_is_the_prior() {
-        assert_eq!(alphas("l9"), [1.0, 1.0, 1.0, 0.0]);
-        assert_eq!(alphas("S3"), [0.0, 0.0, 1.0, 1.0]);
-        assert_eq!(alphas("12 0"), [1.0; 4]);
-        let (snapshot, others, _) = press("4");
-        assert_eq!(snapshot.message, None);
-        let text = "there are 3 sensor experts; 9 is the prior".to_owned();
-        assert_eq!(others, [Action::Explain { error: true, text }]);
-    }
-
-    #[test]
-    fn tempering_counts_in_tenths_and_comes_back_to_one() {
-        assert_eq!(alphas("a2---"), [1.0, 0.7, 1.0, 1.0]);
-        assert_eq!(alphas("a2---==="), [1.0; 4]);
-        let (_, _, input) = press("a2-<esc>");
-        assert_eq!((input.mode(), input.focused_expert()), (None, 1));
-    }
-
-    #[test]
-    fn another_key_ends_a_mode_and_does_what_it_always_does() {
-        let (snapshot, _, input) = press("c=== l C--- l");
-        assert_eq!(
-            (snapshot.context, snapshot.horizon, snapshot.cursor),
-            (7, 6, 2)
-        );
-        assert_eq!(input.mode(), None);
-    }
-
-    #[test]
-    fn a_line_can_be_typed() {
-        assert_eq!(press(":12<enter>").0.cursor, 11);
-        assert_eq!(press(":12<esc>l").0.cursor, 1);
-        assert_eq!(
-            press(":alpha<space>haptic<space>0.25<enter>").0.experts[1].alpha,
-            0.25
-        );
-        assert_eq!(press(":episode<space>3<enter>").0.episode_index, 2);
-        assert_eq!(press(":q<enter>").1, [Action::Face(FaceCommand::Quit)]);
-        let (snapshot, others, input) = press(":nonsense<enter>:4");
-        assert!(matches!(&others[..], [Action::Explain { error: true, .. }]));
-        assert_eq!(input.hint(&snapshot).as_deref(), Some(":4"));
-        assert_eq!(press(":x<backspace><backspace>l").0.cursor, 1);
-    }
+    let text = format!("there are {sensors} sensor experts; 9 is the prior");
+    Some(Err(Action::Explain { error: true, text }))
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,9 @@
 //! Between a session and its state string.
 
+use std::sync::Arc;
+
+use super::settings::Settings;
+use super::snapshot::ModelInfo;
 use super::state::State;
 use super::{Pending, Session};
 
@@ -24,11 +28,12 @@ impl Session {
             }
         }
         if let Some(name) = &state.model {
-            match (0..self.models.len()).find(|&model| self.model_key(model) == *name) {
+            match model_named(&self.models, name) {
                 Some(model) => target.model = model,
                 None => complaints.push(format!("model: none named {name:?} is loaded")),
             }
         }
+        self.take_compared(&state, target.model, &mut complaints);
         self.pending.clear();
         if target != self.target {
             self.go_to(target);
@@ -37,7 +42,8 @@ impl Session {
         if self.opened().is_some() {
             self.finish(restoration);
         } else {
-            self.pending.push_back(Pending::Restoration(restoration));
+            let restoration = Pending::Restoration(Box::new(restoration));
+            self.pending.push_back(restoration);
         }
     }
 
@@ -52,6 +58,7 @@ impl Session {
             let settings = &mut session.settings;
             settings.scope = state.scope.unwrap_or(settings.scope);
             settings.horizon = state.horizon.unwrap_or(settings.horizon);
+            take_bench(settings, &state);
             session.take_switches(&state, &mut complaints);
             // Where it already is may be the only place there is.
             let context = state
@@ -74,6 +81,10 @@ impl Session {
             ));
         }
         self.playback.looping = state.looping.unwrap_or(self.playback.looping);
+        if self.table.view().order != state.order {
+            self.table.rank_by(state.order);
+        }
+        self.take_steps(&state, steps, &mut complaints);
         if !state.unknown.is_empty() {
             let keys: Vec<&str> = state.unknown.iter().map(|(key, _)| key.as_str()).collect();
             complaints.push(format!("kept without a meaning here: {}", keys.join(", ")));
@@ -81,6 +92,39 @@ impl Session {
         self.unknown_keys = state.unknown;
         if !complaints.is_empty() {
             self.complain(complaints.join("; "));
+        }
+    }
+
+    fn take_compared(&mut self, state: &State, shown: usize, complaints: &mut Vec<String>) {
+        let Some(name) = &state.compare else {
+            return;
+        };
+        match model_named(&self.models, name) {
+            Some(model) if model == shown => {
+                complaints.push(format!("compare: {name:?} is the model itself"));
+            }
+            Some(model) => self.compare = Some(model),
+            None => complaints.push(format!("compare: none named {name:?} is loaded")),
+        }
+    }
+
+    /// Marks and selection, where the episode has such steps.
+    fn take_steps(&mut self, state: &State, steps: usize, complaints: &mut Vec<String>) {
+        let (marks, outside): (Vec<usize>, Vec<usize>) =
+            state.marks.iter().partition(|&&mark| mark < steps);
+        if let Some(mark) = outside.first() {
+            complaints.push(format!("marks: {} is outside 1 to {steps}", mark + 1));
+        }
+        let meta = self.source.metas().get(self.target.episode);
+        if let Some(meta) = meta.filter(|_| !state.marks.is_empty()) {
+            self.marks
+                .insert(meta.id.clone(), marks.into_iter().collect());
+        }
+        let last = |(first, last): (usize, Option<usize>)| last.unwrap_or(first);
+        self.selection = state.selection.filter(|&selection| last(selection) < steps);
+        self.keep_selection();
+        if self.selection != state.selection {
+            complaints.push(format!("select: reaches outside 1 to {steps}"));
         }
     }
 
@@ -107,32 +151,49 @@ impl Session {
         State {
             episode: meta.map(|meta| meta.id.clone()),
             step: Some(self.playback.cursor + 1),
-            model: self.model().map(|_| self.model_key(self.target.model)),
+            model: self
+                .model()
+                .map(|_| model_key(&self.models, self.target.model)),
+            compare: self.compare.map(|model| model_key(&self.models, model)),
             context: Some(rollout.map_or(self.settings.context, |rollout| rollout.start + 1)),
             horizon: Some(self.settings.horizon),
             scope: Some(self.settings.scope),
             speed: Some(self.playback.speed()),
             looping: Some(self.playback.looping),
             switches: self.settings.switches.clone(),
+            corruptions: self.settings.corruptions.clone(),
+            controls: self.settings.controls,
+            sampling: self.settings.sampling,
+            marks: meta
+                .and_then(|meta| self.marks.get(&meta.id).cloned())
+                .unwrap_or_default(),
+            selection: self.selection,
+            order: self.table.view().order,
             unknown: self.unknown_keys.clone(),
         }
     }
+}
 
-    /// A model's name, with a number where an earlier one has the same.
-    fn model_key(&self, model: usize) -> String {
-        let Some(info) = self.models.get(model) else {
-            return String::new();
-        };
-        let earlier = self
-            .models
-            .iter()
-            .take(model)
-            .filter(|m| m.name == info.name)
-            .count();
-        if earlier == 0 {
-            info.name.clone()
-        } else {
-            format!("{}#{}", info.name, earlier + 1)
-        }
+/// What is computed otherwise than at the start, and only that: what a string does not mention is as at the start.
+fn take_bench(settings: &mut Settings, state: &State) {
+    settings.corruptions.clone_from(&state.corruptions);
+    settings.controls = state.controls;
+    settings.sampling = state.sampling;
+}
+
+/// A model's name, with a number where an earlier one has the same.
+pub(super) fn model_key(models: &[Arc<ModelInfo>], model: usize) -> String {
+    let Some(info) = models.get(model) else {
+        return String::new();
+    };
+    let earlier = models[..model].iter().filter(|m| m.name == info.name);
+    match earlier.count() {
+        0 => info.name.clone(),
+        earlier => format!("{}#{}", info.name, earlier + 1),
     }
+}
+
+/// The model of a key.
+pub(super) fn model_named(models: &[Arc<ModelInfo>], key: &str) -> Option<usize> {
+    (0..models.len()).find(|&model| model_key(models, model) == key)
 }

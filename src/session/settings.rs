@@ -1,6 +1,7 @@
 //! What undo takes back: switches, scope, context, horizon, damaged inputs, edited controls and sampling.
 
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 use serde::{Deserialize, Serialize};
 
@@ -9,6 +10,10 @@ use super::switches::Switches;
 use crate::measure::corruption::Corruption;
 use crate::modality::Modality;
 
+/// So many samples at least, for a covariance, and at most, for a wait that nobody notices.
+pub const SAMPLES: RangeInclusive<usize> = 2..=1024;
+/// From a stop to the fastest edited controls.
+pub const SCALES: RangeInclusive<f32> = 0.0..=4.0;
 /// How many changes can be taken back.
 const HISTORY: usize = 256;
 
@@ -74,6 +79,32 @@ impl ControlEdit {
             scale: 1.0,
             mirror: false,
         }
+    }
+
+    /// Turned by so many degrees more; what it comes to lies in (-180, 180].
+    #[must_use]
+    pub fn turned(self, by_deg: f32) -> Self {
+        let mut rotate_deg = self.rotate_deg + by_deg;
+        // What is within keeps every bit, so that it can be written and read back.
+        if rotate_deg <= -180.0 || rotate_deg > 180.0 {
+            let whole = rotate_deg.rem_euclid(360.0);
+            rotate_deg = if whole > 180.0 { whole - 360.0 } else { whole };
+        }
+        Self { rotate_deg, ..self }
+    }
+
+    /// So many times as fast as recorded, within [`SCALES`].
+    #[must_use]
+    pub fn scaled(self, scale: f32) -> Self {
+        Self {
+            scale: scale.clamp(*SCALES.start(), *SCALES.end()),
+            ..self
+        }
+    }
+
+    /// This edit, or none where it leaves every control as it was.
+    pub fn unless_identity(self) -> Option<Self> {
+        (!self.is_identity()).then_some(self)
     }
 
     /// Whether it leaves every control as it was.
@@ -170,6 +201,7 @@ impl History {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::corruption::Damage;
 
     #[test]
     fn context_and_horizon_fit_the_episode() {
@@ -206,6 +238,40 @@ mod tests {
             ..from
         });
         assert!((turned[1][0] + 1.0).abs() < 1e-6 && turned[1][1].abs() < 1e-6);
+    }
+
+    #[test]
+    fn turns_come_round_and_scales_keep_their_bounds() {
+        let turned = |by: f32| ControlEdit::from(0).turned(by).rotate_deg;
+        let whole: Vec<f32> = [15.0, 180.0, 195.0, -180.0, -190.0, 720.0]
+            .map(turned)
+            .to_vec();
+        assert_eq!(whole, [15.0, 180.0, -165.0, 180.0, 170.0, 0.0]);
+        let scales = [-1.0, 0.5, 9.0].map(|scale| ControlEdit::from(0).scaled(scale).scale);
+        assert_eq!(scales.to_vec(), [0.0, 0.5, 4.0]);
+        assert_eq!(ControlEdit::from(3).unless_identity(), None);
+    }
+
+    #[test]
+    fn a_damaged_input_edited_controls_and_samples_can_be_taken_back() {
+        let mut history = History::default();
+        let before = Settings::default();
+        let mut after = before.clone();
+        let corruption = Corruption {
+            damage: Damage::Noise,
+            severity: 0.5,
+            from: 0,
+            until: None,
+            patch: [0.5; 2],
+            seed: 0,
+        };
+        after.corruptions.insert(Modality::Vision, corruption);
+        after.controls = Some(ControlEdit::from(2).turned(30.0));
+        after.sampling.shown = true;
+        assert_ne!(before, after);
+        history.record(before.clone());
+        assert_eq!(history.undo(&after), Some(before.clone()));
+        assert_eq!(history.redo(&before), Some(after));
     }
 
     #[test]

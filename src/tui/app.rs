@@ -6,7 +6,7 @@ use super::axis::Axis;
 use super::experts::expert_at;
 use super::face::Face;
 use super::help;
-use super::view::Pane;
+use super::view::{Pane, View};
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::input::{Action, Input};
@@ -83,8 +83,10 @@ impl App {
             }
             None => Flow::Go,
         };
+        let snapshot = self.session.snapshot();
         self.face.expert = self.input.focused_expert();
-        self.face.prompt = self.input.hint(&self.session.snapshot());
+        self.face.prompt = self.input.hint(&snapshot);
+        self.face.palette = self.input.palette(&snapshot);
         flow
     }
 
@@ -105,6 +107,15 @@ impl App {
                 }
             }
             FaceCommand::NextView => face.open(face.view.next()),
+            FaceCommand::View(name) => {
+                if let Some(view) = View::ALL.into_iter().find(|view| view.name() == name) {
+                    face.open(view);
+                }
+            }
+            FaceCommand::Difference => self.not_yet("the difference of two models"),
+            FaceCommand::Blink => self.not_yet("blinking"),
+            FaceCommand::Wipe => self.not_yet("the wipe"),
+            FaceCommand::Episodes => self.not_yet("the list of episodes"),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -114,6 +125,13 @@ impl App {
             }
         }
         Flow::Go
+    }
+
+    fn not_yet(&mut self, what: &str) {
+        self.session.say(Message {
+            error: true,
+            text: format!("the terminal does not draw {what} yet"),
+        });
     }
 
     /// Takes what the mouse did at a cell of the screen.

@@ -4,6 +4,7 @@ use super::episodes::list::List;
 use super::pixels::Pixels;
 use super::theme::Depth;
 use super::view::{Pane, View, Wants};
+use crate::session::palette::PaletteView;
 
 /// View-only state; nothing of it changes what is computed, but for what a view [`wants`](Face::wants).
 #[derive(Debug)]
@@ -20,6 +21,8 @@ pub struct Face {
     pub help: Option<usize>,
     /// What is being typed, with what stands before it; none when nothing is.
     pub prompt: Option<String>,
+    /// What can be chosen while a line is typed.
+    pub palette: Option<PaletteView>,
     /// The expert whose Gaussian is shown beside the belief, by its place in the list.
     pub expert: usize,
     /// The chosen cell of the lattice.
@@ -40,6 +43,7 @@ impl Default for Face {
             episodes: None,
             help: None,
             prompt: None,
+            palette: None,
             expert: 0,
             lattice_cell: 0,
             depth: Depth::default(),

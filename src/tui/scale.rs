@@ -113,20 +113,28 @@ mod tests {
     use super::*;
 
     fn labels(scale: Scale, most: usize) -> Vec<String> {
-        scale.ticks(most).into_iter().map(|(_, label)| label).collect()
+        scale
+            .ticks(most)
+            .into_iter()
+            .map(|(_, label)| label)
+            .collect()
     }
 
     #[test]
     fn ticks_are_round_and_few() {
         assert_eq!(labels(Scale::linear(0.0, 1.0), 2), ["0.0", "0.5", "1.0"]);
         assert_eq!(labels(Scale::linear(-3.0, 12.0), 4), ["0", "5", "10"]);
-        assert_eq!(labels(Scale::log(1.0, 60.0), 6), ["1", "2", "5", "10", "20", "50"]);
+        assert_eq!(
+            labels(Scale::log(1.0, 60.0), 6),
+            ["1", "2", "5", "10", "20", "50"]
+        );
         assert!(labels(Scale::linear(0.0, f32::NAN), 4).is_empty());
     }
 
     #[test]
     fn an_axis_holds_its_values() {
-        let scale = Scale::around([23.4, 29.1, f32::NAN].into_iter()).unwrap_or(Scale::linear(0.0, 0.0));
+        let scale =
+            Scale::around([23.4, 29.1, f32::NAN].into_iter()).unwrap_or(Scale::linear(0.0, 0.0));
         assert_eq!((scale.low, scale.high), (22.0, 30.0));
         assert_eq!(Scale::around([f32::NAN].into_iter()), None);
         assert!((Scale::log(1.0, 100.0).part(10.0) - 0.5).abs() < 1e-6);

@@ -90,11 +90,7 @@ impl Grid {
 /// Rows that are of use out of so many, without the error.
 pub fn rows(width: u16, height: u16, steps: usize) -> u16 {
     let grid = Grid::of((width, height), steps, THREE, 1);
-    if grid.side == 0 {
-        0
-    } else {
-        grid.pitch * 3
-    }
+    if grid.side == 0 { 0 } else { grid.pitch * 3 }
 }
 
 fn steps(snapshot: &Snapshot) -> usize {
@@ -164,7 +160,14 @@ impl Grid {
             }
         }
         if let Some(i) = self.rows.iter().position(|&row| row == Row::Prediction) {
-            text(buf, pane, LABELS, 1 + i as u16 * self.pitch, "context", dim());
+            text(
+                buf,
+                pane,
+                LABELS,
+                1 + i as u16 * self.pitch,
+                "context",
+                dim(),
+            );
         }
     }
 
@@ -202,7 +205,11 @@ impl Row {
         };
         text(buf, pane, 0, row, name, style);
         if rows >= 2 && !below.is_empty() {
-            let style = if self == Self::Model { prediction } else { dim() };
+            let style = if self == Self::Model {
+                prediction
+            } else {
+                dim()
+            };
             text(buf, pane, 0, row + 1, below, style);
         }
     }
@@ -234,7 +241,9 @@ fn difference(shown: &Frame, truth: &Frame) -> Option<Raster> {
     same.then(|| Raster {
         width: shown.width,
         height: shown.height,
-        values: std::iter::zip(&shown.pixels, &truth.pixels).map(signed).collect(),
+        values: std::iter::zip(&shown.pixels, &truth.pixels)
+            .map(signed)
+            .collect(),
         signed: true,
     })
 }

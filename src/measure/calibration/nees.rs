@@ -50,7 +50,7 @@ pub fn nees(error: &Error2) -> Option<f64> {
 }
 
 /// The mean NEES of many episodes at one distance from the last observation.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HorizonNees {
     /// Steps of prediction; 0 is the filtered belief.
     pub horizon: usize,

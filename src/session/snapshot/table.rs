@@ -32,6 +32,36 @@ pub enum Column {
     Flags,
 }
 
+impl Column {
+    /// All columns, in the order of the table.
+    pub const ALL: [Self; 9] = [
+        Self::Index,
+        Self::Id,
+        Self::Steps,
+        Self::Rmse,
+        Self::Distance,
+        Self::Gain,
+        Self::Nees,
+        Self::Conflict,
+        Self::Flags,
+    ];
+
+    /// What it is called after `:sort`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Index => "index",
+            Self::Id => "id",
+            Self::Steps => "steps",
+            Self::Rmse => "rmse",
+            Self::Distance => "distance",
+            Self::Gain => "gain",
+            Self::Nees => "nees",
+            Self::Conflict => "conflict",
+            Self::Flags => "flags",
+        }
+    }
+}
+
 /// Every episode of the dataset.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TableView {

@@ -3,9 +3,12 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::measure::corruption::{Corruption, Damage};
+use crate::modality::Modality;
 use crate::session::input::{Action, Input};
 use crate::session::keymap::bindings;
 use crate::session::keys::Key;
+use crate::session::settings::ControlEdit;
 
 fn any_command() -> impl Strategy<Value = Command> {
     let small = -20_i64..20;
@@ -111,17 +114,72 @@ proptest! {
     }
 
     #[test]
-    fn random_keys_never_panic(picks in prop::collection::vec((0_usize..99, 0_usize..8), 1..80)) {
+    fn random_keys_never_panic_and_hints_end(picks in prop::collection::vec(any_key(), 1..120)) {
         let mut session = Session::new(Arc::new(FakeSource::new(3)), models());
         let mut input = Input::default();
-        for (binding, key) in picks {
-            let keys = bindings()[binding % bindings().len()].keys;
-            let key = Key::of_spelling(keys[key % keys.len()]).unwrap();
-            if let Some(Action::Session(command)) = input.press(&key, &session.snapshot()) {
+        for key in picks {
+            let snapshot = bent(session.snapshot(), key.name().len());
+            if let Some(Action::Session(command)) = input.press(&key, &snapshot) {
                 session.apply(command);
             }
             session.update(Duration::from_millis(30));
-            let _ = input.hint(&session.snapshot());
+            let snapshot = session.snapshot();
+            let hint = input.hint(&snapshot);
+            prop_assert_eq!(hint.is_some(), input.mode().is_some());
+            if let Some(view) = input.palette(&snapshot) {
+                prop_assert!(view.chosen.is_none_or(|chosen| chosen < view.entries.len()));
+                prop_assert_eq!(hint, Some(format!(":{}", view.line)));
+            }
         }
+        input.press(&Key::named("esc").unwrap(), &session.snapshot());
+        prop_assert_eq!(input.hint(&session.snapshot()), None);
     }
+}
+
+/// Keys of the table, keys that mean something within a mode, and letters for lines.
+fn any_key() -> impl Strategy<Value = Key> {
+    let bound = (0_usize..999, 0_usize..8).prop_map(|(binding, key)| {
+        let keys = bindings()[binding % bindings().len()].keys;
+        keys[key % keys.len()].to_owned()
+    });
+    let inside = prop::sample::select(vec![
+        "<up>",
+        "<down>",
+        "<left>",
+        "<right>",
+        "<tab>",
+        "<enter>",
+        "<esc>",
+        "<backspace>",
+        "x",
+        "r",
+        "a",
+        "M",
+        "@",
+        ":",
+        "1",
+        "3",
+        "8",
+        "<delete>",
+    ]);
+    let typed = "[a-z0-9 α.-]".prop_map(|c| if c == " " { "<space>".to_owned() } else { c });
+    prop_oneof![bound, inside.prop_map(str::to_owned), typed]
+        .prop_map(|spelling| Key::of_spelling(&spelling).unwrap())
+}
+
+/// Damage and edits that a session may have: what the modes start from.
+fn bent(mut snapshot: Snapshot, by: usize) -> Snapshot {
+    if by > 2 {
+        let corruption = Corruption {
+            damage: Damage::ALL[by % 6],
+            severity: 0.95,
+            from: by,
+            until: Some(by + 2),
+            patch: [0.0, 1.0],
+            seed: 1,
+        };
+        snapshot.corruptions = vec![(Modality::Vision, corruption)];
+        snapshot.control_edit = Some(ControlEdit::from(by).turned(170.0));
+    }
+    snapshot
 }

@@ -146,7 +146,11 @@ mod tests {
         let mut list = List::open(&snapshot);
         pressed(&mut list, &snapshot, &["j", "<down>", "k"]);
         assert_eq!(list.selected, snapshot.episode_index + 1);
-        let asked = pressed(&mut list, &snapshot, &["<enter>", "7", "<", ">", "o", "<esc>", "G"]);
+        let asked = pressed(
+            &mut list,
+            &snapshot,
+            &["<enter>", "7", "<", ">", "o", "<esc>", "G"],
+        );
         assert_eq!(
             asked,
             [

@@ -46,7 +46,10 @@ impl Arrows {
         }
         let chain = |factor: f32| {
             let to = |from: (f32, f32), [x, y]: [f32; 2]| {
-                (from.0 + view.length(factor * x), from.1 - view.length(factor * y))
+                (
+                    from.0 + view.length(factor * x),
+                    from.1 - view.length(factor * y),
+                )
             };
             let mut at = start;
             let tips = pulls.iter().map(|&(expert, pull)| {
@@ -97,7 +100,10 @@ impl Arrows {
         let prior = (self.start, Expert::Prior.letter(), Some(Expert::Prior));
         // At its true length the correction ends where the belief's own mark stands.
         let sum = (self.factor > 1.0).then_some((self.sum, 'Σ', None));
-        let tips = self.tips.iter().map(|&(expert, tip)| (tip, expert.letter(), Some(expert)));
+        let tips = self
+            .tips
+            .iter()
+            .map(|&(expert, tip)| (tip, expert.letter(), Some(expert)));
         let mut placed: Vec<((u16, u16), char, Option<Expert>)> = Vec::new();
         for (at, symbol, expert) in [prior].into_iter().chain(sum).chain(tips) {
             let Some((column, row)) = view.cell(at) else {
@@ -114,7 +120,10 @@ impl Arrows {
 
     /// The cells of the letters.
     pub fn cells(&self, view: &Plane) -> Vec<(u16, u16)> {
-        self.letters(view).into_iter().map(|(cell, ..)| cell).collect()
+        self.letters(view)
+            .into_iter()
+            .map(|(cell, ..)| cell)
+            .collect()
     }
 
     /// Draws the letters.

@@ -23,8 +23,8 @@ use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
 use super::{at_step, dots, ellipses, marks, masses, off, paths, window};
-use crate::modality::Expert;
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
+use crate::modality::Expert;
 use crate::session::snapshot::{PositionView, Snapshot};
 
 /// Rows of the legend at most.
@@ -44,7 +44,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     };
     title(buf, pane, "table cm", &off(position), focused);
     let inner = below_title(pane);
-    let other = snapshot.other.as_ref().and_then(|other| other.position.as_ref());
+    let other = snapshot
+        .other
+        .as_ref()
+        .and_then(|other| other.position.as_ref());
     let extent = Extent::of(position).map(|extent| extent.and(other.and_then(Extent::of)));
     // The window does not depend on what the legend says, or the picture would jump.
     let room = LEGEND.min(inner.height / 4);
@@ -84,7 +87,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     {
         put(buf, plane, column, row, 'r', strong());
     }
-    let taken = arrows.as_ref().map(|arrows| arrows.cells(&view)).unwrap_or_default();
+    let taken = arrows
+        .as_ref()
+        .map(|arrows| arrows.cells(&view))
+        .unwrap_or_default();
     ghosts(buf, (plane, &taken), &view, snapshot, face);
     marks(buf, plane, &view, position, snapshot.cursor, face);
     if let Some(arrows) = &arrows {

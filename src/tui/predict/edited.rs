@@ -17,7 +17,9 @@ pub fn words(edit: &ControlEdit) -> String {
         let parts: Vec<String> = [turned, scaled, mirrored].into_iter().flatten().collect();
         parts.join(", ")
     };
-    format!("controls from step {from}: {parts}; the prediction follows these, the truth the recorded ones")
+    format!(
+        "controls from step {from}: {parts}; the prediction follows these, the truth the recorded ones"
+    )
 }
 
 #[cfg(test)]
@@ -35,6 +37,9 @@ mod tests {
         assert!(words(&edit).starts_with("controls from step 6: turned 30°, × 0.5, mirrored; "));
         let stopped = ControlEdit { scale: 0.0, ..edit };
         assert!(words(&stopped).starts_with("controls from step 6: stopped; "));
-        assert_eq!(words(&ControlEdit::from(0)), "controls from step 1: as recorded");
+        assert_eq!(
+            words(&ControlEdit::from(0)),
+            "controls from step 1: as recorded"
+        );
     }
 }

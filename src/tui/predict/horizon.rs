@@ -65,7 +65,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .iter()
         .flat_map(|line| steps.iter().map(|&(_, step)| line.at(step)));
     let Some(y) = Scale::around(values) else {
-        let why = if snapshot.busy { "computing…" } else { "nothing was predicted yet" };
+        let why = if snapshot.busy {
+            "computing…"
+        } else {
+            "nothing was predicted yet"
+        };
         text(buf, inner, 0, 0, why, dim());
         return;
     };
@@ -76,12 +80,19 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         plot.upright(now as f32, dim());
     }
     for line in &lines {
-        let points: Vec<(f32, f32)> = steps.iter().map(|&(h, step)| (h as f32, line.at(step))).collect();
+        let points: Vec<(f32, f32)> = steps
+            .iter()
+            .map(|&(h, step)| (h as f32, line.at(step)))
+            .collect();
         plot.line(&points, line.stroke, line.style);
     }
     if let Some(now) = cursor_ahead(snapshot) {
         for line in &lines {
-            plot.mark((now as f32, line.at(snapshot.cursor)), line.mark, strong().patch(line.style));
+            plot.mark(
+                (now as f32, line.at(snapshot.cursor)),
+                line.mark,
+                strong().patch(line.style),
+            );
         }
     }
     plot.draw(buf, &labels(last));

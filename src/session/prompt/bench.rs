@@ -1,0 +1,108 @@
+//! Lines that damage inputs, edit controls and choose experts.
+
+use super::{Choice, split};
+use crate::measure::corruption::{Corruption, Damage};
+use crate::modality::Modality;
+use crate::session::command::Command;
+use crate::session::settings::{ControlEdit, SCALES};
+use crate::session::snapshot::Snapshot;
+use crate::session::state::names::{MODALITIES, name_of, one_of};
+use crate::session::switches::Reach;
+
+/// Severity of a damage that says nothing else.
+const HALF: f32 = 0.5;
+
+/// A new corruption as the scope at the cursor has it.
+pub(in crate::session) fn aimed(damage: Damage, snapshot: &Snapshot) -> Corruption {
+    let Reach { from, until } = Reach::of(snapshot.scope, snapshot.cursor);
+    Corruption {
+        damage,
+        severity: HALF,
+        from,
+        until,
+        patch: [0.5; 2],
+        seed: snapshot.sampling.seed,
+    }
+}
+
+/// `vision noise`, `haptic hold 0.3`, `proprio none`.
+pub(super) fn corrupt(text: &str, snapshot: &Snapshot) -> Option<Command> {
+    let (modality, rest) = split(text);
+    let modality = one_of(modality, &MODALITIES).ok()?;
+    let (kind, severity) = split(rest);
+    if kind == "none" {
+        return severity.is_empty().then_some(Command::Corrupt {
+            modality,
+            corruption: None,
+        });
+    }
+    let damage = kinds(modality).find(|damage| damage.name() == kind)?;
+    let mut corruption = aimed(damage, snapshot);
+    if !severity.is_empty() {
+        let severity = severity.parse().ok();
+        corruption.severity = severity.filter(|s| (0.0..=1.0).contains(s))?;
+    }
+    let corruption = Some(corruption);
+    Some(Command::Corrupt {
+        modality,
+        corruption,
+    })
+}
+
+/// What there is to damage, and how.
+pub(super) fn corruptions(snapshot: &Snapshot) -> Vec<Choice> {
+    let experts = snapshot.experts.iter();
+    let mut modalities: Vec<Modality> = experts
+        .flat_map(|view| view.expert.modalities())
+        .copied()
+        .collect();
+    modalities.sort_unstable();
+    modalities.dedup();
+    let all = modalities.into_iter().flat_map(|modality| {
+        let name = name_of(modality, &MODALITIES);
+        let kinds = kinds(modality).map(Damage::name).chain(["none"]);
+        kinds
+            .map(|kind| (format!("{name} {kind}"), ""))
+            .collect::<Vec<_>>()
+    });
+    all.collect()
+}
+
+/// How a modality can be damaged; only a picture has something to lie in front of.
+pub(in crate::session) fn kinds(modality: Modality) -> impl Iterator<Item = Damage> {
+    let fits = move |damage: &Damage| *damage != Damage::Occlude || modality == Modality::Vision;
+    Damage::ALL.into_iter().filter(fits)
+}
+
+/// `turn 30`, `scale 0.5`, `mirror`, `stop`, `recorded`: of the edit there is, else from the cursor on.
+pub(super) fn controls(text: &str, snapshot: &Snapshot) -> Option<Command> {
+    let (word, rest) = split(text);
+    let edit = snapshot
+        .control_edit
+        .unwrap_or(ControlEdit::from(snapshot.cursor));
+    let number = || rest.parse().ok().filter(|n: &f32| n.is_finite());
+    let edit = match word {
+        "turn" => ControlEdit {
+            rotate_deg: 0.0,
+            ..edit
+        }
+        .turned(number()?),
+        "scale" => edit.scaled(number().filter(|scale| SCALES.contains(scale))?),
+        "mirror" if rest.is_empty() => ControlEdit {
+            mirror: !edit.mirror,
+            ..edit
+        },
+        "stop" if rest.is_empty() => edit.scaled(0.0),
+        "recorded" if rest.is_empty() => return Some(Command::EditControls(None)),
+        _ => return None,
+    };
+    Some(Command::EditControls(edit.unless_identity()))
+}
+
+/// `VHD`: the experts of these letters.
+pub(super) fn set(text: &str, snapshot: &Snapshot) -> Option<Command> {
+    let wanted: Vec<char> = text.chars().map(|c| c.to_ascii_uppercase()).collect();
+    let letters = || snapshot.experts.iter().map(|view| view.expert.letter());
+    let known = !wanted.is_empty() && wanted.iter().all(|&c| letters().any(|l| l == c));
+    known.then(|| Command::UseSet(letters().map(|letter| wanted.contains(&letter)).collect()))
+}
