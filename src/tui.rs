@@ -1,21 +1,21 @@
 //! The terminal: draws a [`Snapshot`](crate::session::snapshot::Snapshot), never computes one.
 //!
 //! ```text
-//! status            dataset  model                 computing…  episode 3/24  push-3 test  scope episode
+//! status            view  dataset  model           computing…  episode 3/24  push-3 test  scope episode
 //! frames, image     truth         belief        prediction    error ±0.50
 //!                   ▀▀▀▀▀▀▀▀▀▀▀   ▀▀▀▀▀▀▀▀▀▀▀   ▀▀▀▀▀▀▀▀▀▀▀   ▀▀▀▀▀▀▀▀▀▀▀
 //! strip             every 2nd step of the same, on a large screen
 //! experts           1 V vision  ● on   2.1 0.31 ██████ 52 %   position cm           position, braille
 //!                   9 D prior   ● on   1.9 0.60 ░░░    21 %    12   ╌╌╌╌×╌╌
-//! shares, stack     share per latent dimension                     ────●┈┈┈◆        latents
+//! dims, stack       share per latent dimension                     ────●┈┈┈◆        latents
 //! timeline          step ━━━━━━┃╌╌╌╌◆╌╌╌╌╌╌╌──                  0
 //!                   force  ▂▃▄▅▆▇█▇▆▅▄▃▂  3.2 N                  -3           12
 //!                   share ▓▓▓▓▒▒▒▒░░░░
 //! palette           commands to choose from while a line is typed, over what is above the last line
 //! status::message   message, prompt, warning or a few keys
 //! ```
-//! One file a pane; [`layout`] says where each stands, [`face`] holds what only this face knows, [`app`] turns keys
-//! and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text.
+//! This is the overview; [`view`] lists the other views and the panes of each. One file a pane; [`layout`] says where
+//! each stands, [`face`] holds what only this face knows, [`app`] turns keys and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text.
 
 pub mod app;
 pub mod face;
@@ -23,19 +23,24 @@ pub mod layout;
 pub mod pixels;
 pub mod terminal;
 pub mod theme;
+pub mod view;
 
 mod axis;
+mod border;
 mod braille;
+mod consistency;
 mod experts;
 mod frames;
+mod fuse;
 mod help;
 mod image;
 mod latents;
+mod lattice;
 mod paint;
 mod palette;
 mod position;
+mod predict;
 mod print;
-mod shares;
 mod stack;
 mod status;
 mod strip;
@@ -47,14 +52,16 @@ mod fixture;
 mod tests;
 
 use ratatui::Frame;
+use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 pub use face::Face;
 pub use print::print;
 
-use crate::session::snapshot::Snapshot;
-use layout::{Panes, SMALLEST};
+use crate::session::snapshot::{Badge, Snapshot};
+use layout::{Layout, SMALLEST, Shape};
+use view::Pane;
 
 /// Draws one frame.
 pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
@@ -66,45 +73,67 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
         paint::text(buf, screen, 0, 0, &line, Style::new());
         return;
     }
-    let panes = panes(screen, snapshot, face);
-    status::draw(buf, panes.status, snapshot, face);
-    let shown = |pane: Rect| !pane.is_empty();
-    if shown(panes.frames) {
-        frames::draw(buf, panes.frames, snapshot, face);
+    let layout = layout(screen, snapshot, face);
+    status::draw(buf, layout.status, snapshot, face);
+    for (pane, rect) in layout.shown() {
+        drawing(pane)(buf, rect, snapshot, face);
     }
-    if shown(panes.strip) {
-        strip::draw(buf, panes.strip, snapshot, face);
-    }
-    if shown(panes.experts) {
-        experts::draw(buf, panes.experts, snapshot, face);
-    }
-    if shown(panes.shares) {
-        shares::draw(buf, panes.shares, snapshot, face);
-    }
-    if shown(panes.latents) {
-        latents::draw(buf, panes.latents, snapshot, face);
-    }
-    if shown(panes.position) {
-        position::draw(buf, panes.position, snapshot, face);
-    }
-    if shown(panes.timeline) {
-        timeline::draw(buf, panes.timeline, snapshot, face);
-    }
-    status::message(buf, panes.message, snapshot, face);
+    status::message(buf, layout.message, snapshot, face);
     if let Some(view) = &face.palette {
-        palette::draw(buf, palette::pane(screen, panes.message), view);
+        palette::draw(buf, palette::pane(screen, layout.message), view);
     }
     if let Some(page) = face.help {
         help::draw(buf, screen, page);
     }
 }
 
-/// Where the panes are on a screen of this size.
-fn panes(screen: Rect, snapshot: &Snapshot, face: &Face) -> Panes {
+/// What draws a pane.
+fn drawing(pane: Pane) -> fn(&mut Buffer, Rect, &Snapshot, &Face) {
+    match pane {
+        Pane::Frames => frames::draw,
+        Pane::Strip => strip::draw,
+        Pane::Experts => experts::draw,
+        Pane::Dims => fuse::dims::draw,
+        Pane::Latents => latents::draw,
+        Pane::Position => position::draw,
+        Pane::Timeline => timeline::draw,
+        Pane::Pairs => fuse::pairs::draw,
+        Pane::Divergence => fuse::divergence::draw,
+        Pane::Series => fuse::series::draw,
+        Pane::Spread => predict::spread::draw,
+        Pane::Fan => predict::fan::draw,
+        Pane::Samples => predict::samples::draw,
+        Pane::Pulls => position::pulls::draw,
+        Pane::Episodes => consistency::episodes::draw,
+        Pane::Coverage => consistency::coverage::draw,
+        Pane::Horizons => consistency::horizons::draw,
+        Pane::Dependence => consistency::dependence::draw,
+        Pane::Sets => lattice::draw,
+    }
+}
+
+/// Where the panes are on a screen of this size, as the user has moved their borders.
+fn layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
+    let own = own_layout(screen, snapshot, face);
+    if face.zoomed {
+        own
+    } else {
+        own.moved(&face.splits, face.view)
+    }
+}
+
+/// Where the view itself puts them.
+fn own_layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
     let steps = snapshot
         .episode
         .as_ref()
         .map_or(0, |episode| episode.secs.len());
-    let zoom = face.zoomed.then_some(face.focus);
-    Panes::of(screen, steps, snapshot.experts.len(), zoom)
+    let shape = Shape {
+        view: face.view,
+        steps,
+        experts: snapshot.experts.len(),
+        product: snapshot.badge != Badge::NoProduct,
+        zoom: face.zoomed.then_some(face.focus),
+    };
+    Layout::of(screen, shape)
 }

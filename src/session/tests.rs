@@ -8,6 +8,7 @@
 mod faults;
 mod random;
 mod renewing;
+mod restoring;
 mod switching;
 
 use super::fake::{FakePredictor, FakeSource};

@@ -3,9 +3,11 @@
 use ratatui::layout::{Position, Rect, Size};
 
 use super::axis::Axis;
+use super::border::{self, Border};
 use super::experts::expert_at;
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::help;
+use super::view::{Pane, View};
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::input::{Action, Input};
@@ -46,6 +48,8 @@ pub struct App {
     input: Input,
     size: Size,
     seeking: bool,
+    /// A border under the pressed button, where that went down, and the border's offset then.
+    dragged: Option<(Border, Position, i16)>,
 }
 
 impl App {
@@ -58,6 +62,7 @@ impl App {
             input: Input::default(),
             size,
             seeking: false,
+            dragged: None,
         }
     }
 
@@ -97,28 +102,24 @@ impl App {
                 let next = face.help.map_or(0, |page| page + 1);
                 face.help = (next < help::pages(self.size)).then_some(next);
             }
-            FaceCommand::FocusNext => face.focus = face.focus.turned(1),
-            FaceCommand::FocusPrevious => face.focus = face.focus.turned(-1),
+            FaceCommand::FocusNext => face.focus = face.focus.turned(face.view, 1),
+            FaceCommand::FocusPrevious => face.focus = face.focus.turned(face.view, -1),
             FaceCommand::Zoom => face.zoomed = !face.zoomed,
             FaceCommand::Back => {
                 if face.help.take().is_none() {
                     face.zoomed = false;
                 }
             }
-            FaceCommand::NextView => {
-                let last = face.zoomed && face.focus.turned(1) == Focus::default();
-                face.focus = if face.zoomed {
-                    face.focus.turned(1)
-                } else {
-                    Focus::default()
-                };
-                face.zoomed = !last;
+            FaceCommand::NextView => face.open(face.view.next()),
+            FaceCommand::View(name) => {
+                if let Some(view) = View::ALL.into_iter().find(|view| view.name() == name) {
+                    face.open(view);
+                }
             }
-            FaceCommand::View(name) => self.not_yet(&format!("the view {name}")),
+            FaceCommand::Episodes => face.toggle_episodes(),
             FaceCommand::Difference => self.not_yet("the difference of two models"),
             FaceCommand::Blink => self.not_yet("blinking"),
             FaceCommand::Wipe => self.not_yet("the wipe"),
-            FaceCommand::Episodes => self.not_yet("the list of episodes"),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -144,33 +145,50 @@ impl App {
         }
         let snapshot = self.session.snapshot();
         let screen = Rect::new(0, 0, self.size.width, self.size.height);
-        let panes = super::panes(screen, &snapshot, &self.face);
+        let layout = super::layout(screen, &snapshot, &self.face);
+        let timeline = layout.get(Pane::Timeline);
         match pointer {
             Pointer::Wheel(by) => self.session.apply(Command::Step(by)),
-            Pointer::Release => self.seeking = false,
-            Pointer::Drag if self.seeking => self.seek(panes.timeline, at, &snapshot),
-            Pointer::Drag => {}
-            Pointer::Press if panes.timeline.contains(at) => {
-                self.seeking = true;
-                self.face.focus = Focus::Timeline;
-                self.seek(panes.timeline, at, &snapshot);
+            Pointer::Release => {
+                self.seeking = false;
+                self.dragged = None;
             }
-            Pointer::Press if panes.experts.contains(at) => {
-                self.face.focus = Focus::Experts;
-                if let Some(expert) = expert_at(at.y - panes.experts.y, snapshot.experts.len()) {
-                    self.input.focus_expert(expert);
-                    self.face.expert = expert;
-                    self.session.apply(Command::ToggleExpert(expert));
+            Pointer::Drag if self.seeking => self.seek(timeline, at, &snapshot),
+            Pointer::Drag => {
+                if let Some((border, from, by)) = self.dragged {
+                    let own = super::own_layout(screen, &snapshot, &self.face);
+                    let by = by.saturating_add(border.side.way(from, at));
+                    let (face, panes) = (&mut self.face, own.panes());
+                    border::set(&mut face.splits, panes, face.view, border, by);
                 }
             }
             Pointer::Press => {
-                let others = [
-                    (panes.frames, Focus::Frames),
-                    (panes.latents, Focus::Latents),
-                    (panes.position, Focus::Position),
-                ];
-                if let Some((_, focus)) = others.into_iter().find(|(pane, _)| pane.contains(at)) {
-                    self.face.focus = focus;
+                let border = border::at(layout.panes(), at).filter(|_| !self.face.zoomed);
+                self.dragged = border.map(|border| {
+                    let by = border::offset(&self.face.splits, self.face.view, border);
+                    (border, at, by)
+                });
+                let Some((pane, rect)) = layout.at(at) else {
+                    return;
+                };
+                if self.face.view.panes().contains(&pane) {
+                    self.face.focus = pane;
+                }
+                match pane {
+                    // Its title: a border, not a step.
+                    _ if self.dragged.is_some() => {}
+                    Pane::Timeline => {
+                        self.seeking = true;
+                        self.seek(rect, at, &snapshot);
+                    }
+                    Pane::Experts => {
+                        if let Some(expert) = expert_at(at.y - rect.y, snapshot.experts.len()) {
+                            self.input.focus_expert(expert);
+                            self.face.expert = expert;
+                            self.session.apply(Command::ToggleExpert(expert));
+                        }
+                    }
+                    _ => {}
                 }
             }
         }

@@ -1,24 +1,33 @@
-//! One line an expert: its digit, letter and name, its switch, its Gaussian in two numbers, its share of precision.
+//! One line an expert: its digit, letter and name, its switch, its Gaussian in two numbers, its share of precision;
+//! where there is room, what is read of it.
 //!
 //! ```text
-//! experts     α       |μ|    σ share       mean  pos
-//! 1 V vision  ● on   2.10 0.31 ██████       52%  61%
-//! 2 H haptic  ○ off  1.82 0.95               0%   0%
-//! 9 D prior   ◐ 0.50 1.91 0.60 ░░           21%  18%
+//! experts     α       |μ|    σ share   mean  pos NIS head   prop  nats w/o σ    cm
+//! 1 V vision  ● on   2.10 0.31 █████    52%  61%    14.1    11.0  1.31  2.10  0.41
+//! 2 H haptic  ○ off  1.82 0.95           0%   0%       –       –     –     –     –
+//! 3 P proprio ● on  ~noise 0.5 ▒▒       24%  14%    31.9▲   20.2  0.71  0.62  0.12
+//! 9 D prior   ◐ 0.50 1.91 0.60 ░░       24%  25%                  1.02  1.13  0.24
 //! ```
-//! `mean` is the mean share over the latent dimensions, `pos` weighs them by what moves the position (D1).
+//! `mean` is the mean share over the latent dimensions, `pos` weighs them by what moves the position (D1). An expert
+//! that is removed (`○ off`) and one whose input is damaged (`~`) are different things: the damaged one is still heard.
+
+mod readings;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::face::{Face, Focus};
-use super::layout::LEFT;
-use super::paint::{bar, right, text};
-use super::theme::{dim, strong};
-use crate::modality::Expert;
-use crate::session::snapshot::{ExpertView, LatentView, Snapshot};
+use super::face::Face;
+use super::layout::columns;
+use super::paint::{bar, right, short, text};
+use super::theme::{WARNING, dim, strong};
+use super::view::Pane;
+use crate::measure::corruption::{Corruption, Damage};
+use crate::modality::{Expert, Modality};
+use crate::session::snapshot::{Badge, ExpertView, LatentView, Snapshot};
 
+/// Columns of the table without the readings, at least.
+const BASE: u16 = 44;
 /// Columns after which each column of the table ends, from the left.
 const MARK: u16 = 12;
 const MEAN_END: u16 = 23;
@@ -29,27 +38,27 @@ const SHARE_END: u16 = 5;
 
 /// Draws the table.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
-    let focused = face.is_focused(Focus::Experts);
-    let title = if focused { "▸ experts" } else { "experts" };
-    text(buf, pane, 0, 0, title, strong());
-    text(buf, pane, MARK, 0, "α", dim());
-    right(buf, pane, MEAN_END, 0, "|μ|", dim());
-    right(buf, pane, SIGMA_END, 0, "σ", dim());
-    if pane.width >= LEFT {
-        text(buf, pane, BAR, 0, "share", dim());
-    }
-    right(
-        buf,
-        pane,
-        pane.width.saturating_sub(SHARE_END),
-        0,
-        "mean",
-        dim(),
-    );
-    right(buf, pane, pane.width, 0, "pos", dim());
+    let readings = match pane.width {
+        _ if snapshot.badge == Badge::NoProduct => 0,
+        width => readings::columns_of(width.saturating_sub(BASE + 1)),
+    };
+    let (table, right_part) = if readings > 0 {
+        columns(pane, pane.width - readings - 1, 1)
+    } else {
+        (pane, Rect::default())
+    };
+    let focused = face.is_focused(Pane::Experts);
+    header(buf, table, focused);
     for (i, view) in snapshot.experts.iter().enumerate() {
         let row = 1 + i as u16;
-        line(buf, pane, row, (i, view), face, focused && i == face.expert);
+        let chosen = i == face.expert && (focused || face.is_zoomed(Pane::Experts));
+        line(buf, table, row, (i, view), snapshot, face, chosen);
+    }
+    if readings > 0 {
+        readings::draw(buf, right_part, snapshot, face);
+        let below = 1 + snapshot.experts.len() as u16;
+        let notes = super::layout::rows(pane, below).1;
+        readings::notes(buf, notes, snapshot);
     }
 }
 
@@ -59,13 +68,28 @@ pub fn expert_at(row: u16, experts: usize) -> Option<usize> {
     (expert < experts).then_some(expert)
 }
 
+fn header(buf: &mut Buffer, pane: Rect, focused: bool) {
+    let title = if focused { "▸ experts" } else { "experts" };
+    text(buf, pane, 0, 0, title, strong());
+    text(buf, pane, MARK, 0, "α", dim());
+    right(buf, pane, MEAN_END, 0, "|μ|", dim());
+    right(buf, pane, SIGMA_END, 0, "σ", dim());
+    if pane.width >= BASE {
+        text(buf, pane, BAR, 0, "share", dim());
+    }
+    let share_end = pane.width.saturating_sub(SHARE_END);
+    right(buf, pane, share_end, 0, "mean", dim());
+    right(buf, pane, pane.width, 0, "pos", dim());
+}
+
 fn line(
     buf: &mut Buffer,
     pane: Rect,
     row: u16,
     (i, view): (usize, &ExpertView),
+    snapshot: &Snapshot,
     face: &Face,
-    focused: bool,
+    chosen: bool,
 ) {
     let expert = view.expert;
     let on = view.alpha > 0.0;
@@ -81,51 +105,28 @@ fn line(
         (i + 1).to_string()
     };
     text(buf, pane, 0, row, &digit, dim());
-    text(
-        buf,
-        pane,
-        2,
-        row,
-        &expert.letter().to_string(),
-        strong().patch(ink),
-    );
-    let name = if focused {
-        strong().underlined()
-    } else {
-        plain
-    };
+    let letter = expert.letter().to_string();
+    text(buf, pane, 2, row, &letter, strong().patch(ink));
+    let name = if chosen { strong().underlined() } else { plain };
     text(buf, pane, 4, row, expert.name(), name);
-    text(
-        buf,
-        pane,
-        MARK,
-        row,
-        &switch(view.alpha),
-        if on { Style::new() } else { strong() },
-    );
+    let emphasis = if on { Style::new() } else { strong() };
+    text(buf, pane, MARK, row, &switch(view.alpha), emphasis);
 
-    let (mean, sigma) = view.latent.as_ref().map_or_else(
-        || ("–".to_owned(), "–".to_owned()),
-        |latent| {
-            (
-                significant(norm(&latent.mean)),
-                significant(mean_sigma(latent)),
-            )
-        },
-    );
-    right(buf, pane, MEAN_END, row, &mean, plain);
-    right(buf, pane, SIGMA_END, row, &sigma, plain);
+    if let Some(damage) = damage(expert, &snapshot.corruptions, snapshot.cursor) {
+        let warning = strong().patch(face.depth.ink(WARNING));
+        right(buf, pane, SIGMA_END, row, &damage, warning);
+    } else {
+        let numbers = view.latent.as_ref().map_or([f32::NAN; 2], |latent| {
+            [norm(&latent.mean), mean_sigma(latent)]
+        });
+        right(buf, pane, MEAN_END, row, &short(numbers[0]), plain);
+        right(buf, pane, SIGMA_END, row, &short(numbers[1]), plain);
+    }
 
     let share_end = pane.width.saturating_sub(SHARE_END);
     let room = share_end.saturating_sub(BAR + 5);
-    text(
-        buf,
-        pane,
-        BAR,
-        row,
-        &bar(expert.fill(), view.share_mean, room),
-        ink,
-    );
+    let filled = bar(expert.fill(), view.share_mean, room);
+    text(buf, pane, BAR, row, &filled, ink);
     if view.latent.is_some() {
         right(buf, pane, share_end, row, &percent(view.share_mean), plain);
         let position = view.share_position.map_or_else(|| "–".to_owned(), percent);
@@ -143,21 +144,44 @@ fn switch(alpha: f32) -> String {
     }
 }
 
+/// What is wrong with an expert's input at a step: `~noise 0.5`, with the modality's letter where it has several.
+fn damage(expert: Expert, corruptions: &[(Modality, Corruption)], step: usize) -> Option<String> {
+    let several = expert.modalities().len() > 1;
+    let found = corruptions.iter().find(|(modality, corruption)| {
+        expert.modalities().contains(modality) && is_at(corruption, step)
+    });
+    found.map(|(modality, corruption)| {
+        let letter = match modality {
+            _ if !several => "",
+            Modality::Vision => "V",
+            Modality::Haptic => "H",
+            Modality::Proprio => "P",
+        };
+        format!("{letter}{}", damage_badge(corruption))
+    })
+}
+
+/// A corruption in a few columns: `~noise 0.5`.
+pub fn damage_badge(corruption: &Corruption) -> String {
+    let name = match corruption.damage {
+        Damage::Occlude => "patch",
+        damage => damage.name(),
+    };
+    format!("~{name} {:.1}", corruption.severity)
+}
+
+/// Whether a step is among those a corruption damages.
+pub fn is_at(corruption: &Corruption, step: usize) -> bool {
+    corruption.severity > 0.0
+        && step >= corruption.from
+        && corruption.until.is_none_or(|until| step < until)
+}
+
 fn percent(share: f32) -> String {
     if share.is_finite() {
         format!("{:.0}%", share * 100.0)
     } else {
         "–".to_owned()
-    }
-}
-
-/// Four columns at most, whatever the size.
-fn significant(value: f32) -> String {
-    match value {
-        value if value < 10.0 => format!("{value:.2}"),
-        value if value < 100.0 => format!("{value:.1}"),
-        value if value < 9999.5 => format!("{value:.0}"),
-        value => format!("{value:.0e}"),
     }
 }
 
@@ -179,16 +203,26 @@ mod tests {
     }
 
     #[test]
-    fn numbers_keep_to_their_column() {
-        for value in [0.0, 0.123, 9.99, 45.6, 1234.0, 1e8] {
-            assert!(significant(value).len() <= 4, "{value}");
-        }
-    }
-
-    #[test]
     fn clicks_find_their_line() {
         assert_eq!(expert_at(0, 4), None);
         assert_eq!(expert_at(4, 4), Some(3));
         assert_eq!(expert_at(5, 4), None);
+    }
+
+    #[test]
+    fn damage_is_named_at_its_steps_only() {
+        let noise = Corruption {
+            damage: Damage::Noise,
+            severity: 0.5,
+            from: 3,
+            until: Some(6),
+            patch: [0.5; 2],
+            seed: 0,
+        };
+        let at = |expert, step| damage(expert, &[(Modality::Haptic, noise)], step);
+        assert_eq!(at(Expert::Haptic, 3).as_deref(), Some("~noise 0.5"));
+        assert_eq!(at(Expert::Joint, 5).as_deref(), Some("H~noise 0.5"));
+        assert_eq!(at(Expert::Haptic, 6), None);
+        assert_eq!(at(Expert::Vision, 4), None);
     }
 }

@@ -1,49 +1,18 @@
 //! What only this face knows: where the focus is, what lies over the screen, what the terminal can show.
 
+use super::border::Split;
 use super::pixels::Pixels;
 use super::theme::Depth;
+use super::view::{Pane, View, Wants};
 use crate::session::palette::PaletteView;
 
-/// A pane that can have the focus and fill the screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Focus {
-    /// Truth, belief, prediction, error.
-    #[default]
-    Frames,
-    /// Switches and shares.
-    Experts,
-    /// Means and deviations of the latent.
-    Latents,
-    /// The table.
-    Position,
-    /// Steps, force and shares over time.
-    Timeline,
-}
-
-impl Focus {
-    /// All panes in the order of Tab.
-    pub const ALL: [Self; 5] = [
-        Self::Frames,
-        Self::Experts,
-        Self::Latents,
-        Self::Position,
-        Self::Timeline,
-    ];
-
-    /// The pane so many places on, round and round.
-    #[must_use]
-    pub fn turned(self, by: i64) -> Self {
-        let at = Self::ALL.iter().position(|&pane| pane == self).unwrap_or(0) as i64;
-        let count = Self::ALL.len() as i64;
-        Self::ALL[(at + by).rem_euclid(count) as usize]
-    }
-}
-
-/// View-only state; nothing of it changes what is computed.
-#[derive(Debug, Default)]
+/// View-only state; nothing of it changes what is computed, but for what a view [`wants`](Face::wants).
+#[derive(Debug)]
 pub struct Face {
-    /// The pane that keys like Enter are meant for.
-    pub focus: Focus,
+    /// What is looked at.
+    pub view: View,
+    /// The pane that keys like Enter are meant for; one of the view's.
+    pub focus: Pane,
     /// Whether that pane fills the screen.
     pub zoomed: bool,
     /// Page of the keys that is shown over the screen.
@@ -52,17 +21,67 @@ pub struct Face {
     pub prompt: Option<String>,
     /// What can be chosen while a line is typed.
     pub palette: Option<PaletteView>,
+    /// Borders between panes that have been moved.
+    pub splits: Vec<Split>,
     /// The expert whose Gaussian is shown beside the belief, by its place in the list.
     pub expert: usize,
+    /// The chosen cell of the lattice.
+    pub lattice_cell: usize,
     /// Colours of the terminal.
     pub depth: Depth,
     /// The terminal's own images, where it has them.
     pub pixels: Option<Pixels>,
 }
 
+impl Default for Face {
+    fn default() -> Self {
+        let view = View::default();
+        Self {
+            view,
+            focus: view.panes()[0],
+            zoomed: false,
+            help: None,
+            prompt: None,
+            palette: None,
+            splits: Vec::new(),
+            expert: 0,
+            lattice_cell: 0,
+            depth: Depth::default(),
+            pixels: None,
+        }
+    }
+}
+
 impl Face {
+    /// Opens a view, with the focus on its first pane.
+    pub fn open(&mut self, view: View) {
+        self.view = view;
+        self.focus = view.panes()[0];
+        self.zoomed = false;
+    }
+
+    /// The list of episodes alone on the screen, or the view without it.
+    pub fn toggle_episodes(&mut self) {
+        let was_there = self.is_zoomed(Pane::Episodes);
+        if !was_there {
+            self.open(View::Consistency);
+            self.focus = Pane::Episodes;
+        }
+        self.zoomed = !was_there;
+    }
+
     /// Whether a pane has the focus, for the mark before its title; a zoomed one needs none.
-    pub fn is_focused(&self, pane: Focus) -> bool {
+    pub fn is_focused(&self, pane: Pane) -> bool {
         self.focus == pane && !self.zoomed
+    }
+
+    /// Whether a pane is alone on the screen.
+    pub fn is_zoomed(&self, pane: Pane) -> bool {
+        self.focus == pane && self.zoomed
+    }
+
+    /// What has to be computed for what is shown.
+    pub fn wants(&self) -> Wants {
+        self.view.wants()
     }
 }

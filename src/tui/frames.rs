@@ -15,6 +15,7 @@ use super::face::Face;
 use super::image::{ERROR_RANGE, Raster};
 use super::paint::{below_title, text, width};
 use super::theme::{PREDICTION, dim, strong};
+use super::view::Pane;
 use crate::session::snapshot::{ErrorOf, Snapshot};
 
 /// One image with its label.
@@ -52,7 +53,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             width: side.min(pane.width.saturating_sub(at)),
             ..pane
         };
-        let focused = i == 0 && face.is_focused(super::face::Focus::Frames);
+        let focused = i == 0 && face.is_focused(Pane::Frames);
         label(buf, slot_pane, slot, focused);
         picture(buf, below_title(slot_pane), slot, face);
     }

@@ -5,7 +5,7 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::Style;
 use ratatui::widgets::{Clear, Widget};
 
-use super::paint::{right, text, width};
+use super::paint::{right, text, wrapped};
 use super::theme::{dim, strong};
 use crate::session::keymap::groups;
 
@@ -100,21 +100,6 @@ fn lines(column_width: usize) -> Vec<Line> {
     lines
 }
 
-/// Breaks at blanks so that no line is wider than the room, unless a single word is.
-fn wrapped(help: &str, room: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in help.split(' ') {
-        match lines.last_mut() {
-            Some(line) if usize::from(width(line) + 1 + width(word)) <= room => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,11 +126,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    #[test]
-    fn long_lines_break_at_blanks() {
-        assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
-        assert_eq!(wrapped("incomprehensible", 8), ["incomprehensible"]);
     }
 }

@@ -11,9 +11,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::paint::{below_title, put, right, text, title, width};
 use super::theme::{dim, strong};
+use super::view::Pane;
 use crate::session::snapshot::{LatentView, Snapshot};
 
 const NUMBERS: u16 = 3;
@@ -33,7 +34,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             letter => format!("● belief {letter} {}", view.expert.name()),
         },
     );
-    title(buf, pane, "latents", &note, face.is_focused(Focus::Latents));
+    title(buf, pane, "latents", &note, face.is_focused(Pane::Latents));
     let pane = below_title(pane);
     let Some(belief) = &snapshot.belief else {
         text(buf, pane, 0, 0, "no belief at this step", dim());

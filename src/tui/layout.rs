@@ -1,59 +1,55 @@
-//! Which pane stands where: arithmetic on the size of the screen, nothing else.
+//! Which pane stands where: arithmetic on the size of the screen, nothing else. A file a view.
 //!
-//! ```text
-//! 80×24                              120×40                             200×60
-//! status                             status                             status
-//! frames frames frames frames        frames frames frames frames        frames ×4            position
-//! experts            position        experts    latents    position     strip strip strip strip strip
-//! shares                             shares                             experts   timeline   latents
-//! timeline                           timeline                           shares
-//! message                            message                            message
-//! ```
+//! Every screen has the status line at the top and the message line at the bottom, every view the timeline.
 
-use ratatui::layout::Rect;
+mod consistency;
+mod fuse;
+mod lattice;
+mod overview;
+mod position;
+mod predict;
 
-use super::axis::{LABELS, VALUES};
-use super::face::Focus;
-use super::strip;
+use ratatui::layout::{Position, Rect};
+
+use super::border::{self, Placed, Split};
+use super::view::{Pane, View};
 
 /// The smallest screen that is drawn at all.
 pub const SMALLEST: (u16, u16) = (40, 12);
 
 /// Columns of the left half of a small screen.
 pub const LEFT: u16 = 47;
-/// Images in the frame row.
-const IMAGES: u16 = 4;
-/// Rows of the smallest timeline: header, track, force, two of shares.
-const TIMELINE_ROWS: u16 = 5;
-/// Rows of the smallest stacks of shares per latent dimension.
-const SHARE_ROWS: u16 = 2;
+/// Rows of the smallest timeline: header and track.
+const LEAST_TIMELINE: u16 = 2;
 
-/// Where each pane is; one that is not shown is empty.
+/// What a layout depends on besides the size of the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Panes {
-    /// Dataset, model, episode.
-    pub status: Rect,
-    /// Truth, belief, prediction, error.
-    pub frames: Rect,
-    /// Frames of every k-th step.
-    pub strip: Rect,
-    /// One line an expert.
-    pub experts: Rect,
-    /// Shares per latent dimension.
-    pub shares: Rect,
-    /// Means and deviations.
-    pub latents: Rect,
-    /// The table.
-    pub position: Rect,
-    /// Steps, force, shares over time.
-    pub timeline: Rect,
-    /// Message, prompt or key hints.
-    pub message: Rect,
+pub struct Shape {
+    /// What is looked at.
+    pub view: View,
+    /// T, the steps of the episode.
+    pub steps: usize,
+    /// How many experts the model has, the prior among them.
+    pub experts: usize,
+    /// Whether the model multiplies them.
+    pub product: bool,
+    /// The pane that is alone on the screen.
+    pub zoom: Option<Pane>,
 }
 
-impl Panes {
-    /// Lays out a screen of at least [`SMALLEST`] for an episode of `steps` and a model of `experts`.
-    pub fn of(screen: Rect, steps: usize, experts: usize, zoom: Option<Focus>) -> Self {
+/// Where each pane is.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// View, dataset, model, episode.
+    pub status: Rect,
+    /// Message, prompt or key hints.
+    pub message: Rect,
+    panes: Vec<(Pane, Rect)>,
+}
+
+impl Layout {
+    /// Lays out a screen of at least [`SMALLEST`].
+    pub fn of(screen: Rect, shape: Shape) -> Self {
         let margin = u16::from(screen.width >= 60);
         let inner = Rect {
             x: screen.x + margin,
@@ -62,117 +58,83 @@ impl Panes {
         };
         let (status, rest) = rows(inner, 1);
         let (body, message) = rows(rest, rest.height - 1);
-        let mut panes = Self {
+        let mut layout = Self {
             status,
             message,
-            ..Self::default()
+            panes: Vec::new(),
         };
-        match zoom {
-            Some(pane) => panes.zoom(body, pane, experts),
-            None if screen.width >= 170 && screen.height >= 50 => panes.wide(body, steps, experts),
-            None => panes.stacked(body, steps, experts),
+        match (shape.zoom, shape.view) {
+            (Some(pane), _) => layout.zoom(body, pane, shape),
+            (None, View::Overview) => layout.overview(body, screen, shape),
+            (None, View::Fuse) => layout.fuse(body, shape),
+            (None, View::Predict) => layout.predict(body, shape),
+            (None, View::Position) => layout.position(body, shape),
+            (None, View::Consistency) => layout.consistency(body, shape),
+            (None, View::Lattice) => layout.lattice(body, shape),
         }
-        panes
+        layout
     }
 
-    fn zoom(&mut self, body: Rect, pane: Focus, experts: usize) {
+    /// Where a pane is; empty if it is not shown.
+    pub fn get(&self, pane: Pane) -> Rect {
+        let found = self.panes.iter().find(|(shown, _)| *shown == pane);
+        found.map(|&(_, rect)| rect).unwrap_or_default()
+    }
+
+    /// All of them at once.
+    pub fn panes(&self) -> &[Placed] {
+        &self.panes
+    }
+
+    /// The panes that are shown, none of them empty.
+    pub fn shown(&self) -> impl Iterator<Item = (Pane, Rect)> {
+        self.panes.iter().copied()
+    }
+
+    /// The pane at a cell of the screen.
+    pub fn at(&self, cell: Position) -> Option<(Pane, Rect)> {
+        self.shown().find(|(_, rect)| rect.contains(cell))
+    }
+
+    /// The same with some borders of a view moved.
+    #[must_use]
+    pub fn moved(mut self, splits: &[Split], view: View) -> Self {
+        self.panes = border::apply(&self.panes, splits, view);
+        self
+    }
+
+    /// Puts a pane somewhere; nowhere, if there is no room.
+    fn put(&mut self, pane: Pane, rect: Rect) {
+        if !rect.is_empty() {
+            self.panes.push((pane, rect));
+        }
+    }
+
+    /// Puts the timeline over the whole width below; returns what is left above it.
+    fn put_timeline(&mut self, body: Rect, height: u16) -> Rect {
+        let height = height.clamp(LEAST_TIMELINE, body.height.max(LEAST_TIMELINE));
+        let (above, timeline) = rows(body, body.height.saturating_sub(height));
+        self.put(Pane::Timeline, timeline);
+        above
+    }
+
+    fn zoom(&mut self, body: Rect, pane: Pane, shape: Shape) {
         match pane {
-            Focus::Frames => self.frames = body,
-            Focus::Latents => self.latents = body,
-            Focus::Position => self.position = body,
-            Focus::Timeline => self.timeline = body,
-            Focus::Experts => {
-                let (upper, lower) = rows(body, experts_rows(experts));
-                self.experts = upper;
-                self.shares = rows(lower, 1).1;
+            // The switches alone would leave the screen empty.
+            Pane::Experts if shape.view == View::Overview => {
+                let (upper, lower) = rows(body, experts_rows(shape.experts));
+                self.put(Pane::Experts, upper);
+                self.put(Pane::Dims, rows(lower, 1).1);
             }
+            // Curves over time need the steps they are of.
+            Pane::Series => {
+                let (upper, lower) = rows(body, 3);
+                self.put(Pane::Timeline, upper);
+                self.put(Pane::Series, lower);
+            }
+            pane => self.put(pane, body),
         }
     }
-
-    fn stacked(&mut self, body: Rect, steps: usize, experts: usize) {
-        let roomy = body.width >= 108 && body.height >= 32;
-        let least = experts_rows(experts) + TIMELINE_ROWS;
-        let lower_rows = if body.height >= least + SHARE_ROWS + 6 {
-            least + SHARE_ROWS
-        } else {
-            least
-        };
-        let widest = image_columns(body.width).div_ceil(2) + 1;
-        let spare = body.height.saturating_sub(lower_rows);
-        let frame_rows = if spare >= 5 { spare.min(widest) } else { 0 };
-        let (frames, lower) = rows(body, frame_rows);
-        self.frames = frames;
-        let lower = if roomy { rows(lower, 1).1 } else { lower };
-
-        if body.width < 68 {
-            self.column(lower, experts, false);
-            return;
-        }
-        let left_columns = if roomy { 54 } else { LEFT };
-        let (left, right) = columns(lower, left_columns, 2);
-        let long = steps > usize::from(left_columns - LABELS - VALUES);
-        if roomy {
-            (self.latents, self.position) = columns(right, 24, 2);
-        } else {
-            self.position = right;
-        }
-        if long {
-            // An episode that needs the whole width: one column a step, rather than a coarser axis.
-            let timeline = (lower.height / 3).clamp(TIMELINE_ROWS, 11);
-            let (_, timeline) = rows(lower, lower.height - timeline);
-            self.timeline = timeline;
-            let cut = |pane: Rect| Rect {
-                height: pane.height.saturating_sub(timeline.height),
-                ..pane
-            };
-            self.position = cut(self.position);
-            self.latents = cut(self.latents);
-            (self.experts, self.shares) = rows(cut(left), experts_rows(experts));
-        } else {
-            self.column(left, experts, roomy);
-        }
-    }
-
-    /// Experts, shares per dimension and timeline below one another.
-    fn column(&mut self, pane: Rect, experts: usize, spaced: bool) {
-        let gap = u16::from(spaced);
-        let (upper, rest) = rows(pane, experts_rows(experts));
-        self.experts = upper;
-        let rest = rows(rest, gap).1;
-        let spare = rest.height.saturating_sub(TIMELINE_ROWS + SHARE_ROWS + gap);
-        if rest.height < TIMELINE_ROWS + SHARE_ROWS {
-            self.timeline = rest;
-            return;
-        }
-        let (shares, rest) = rows(rest, SHARE_ROWS + (spare / 3).min(6));
-        self.shares = shares;
-        self.timeline = rows(rest, gap).1;
-    }
-
-    fn wide(&mut self, body: Rect, steps: usize, experts: usize) {
-        // 2×2 pixels of a 64×64 frame to one of the screen.
-        const SIDE: u16 = 32;
-        let (upper, rest) = rows(body, SIDE / 2 + 1);
-        let frame_columns = IMAGES * SIDE + (IMAGES - 1) * 2;
-        (self.frames, self.position) = columns(upper, frame_columns, 3);
-        let rest = rows(rest, 1).1;
-        let strip_rows = strip::rows(rest.width, rest.height.saturating_sub(20), steps);
-        let (strip, rest) = rows(rest, strip_rows);
-        self.strip = strip;
-        let lower = rows(rest, 1).1;
-        let (left, rest) = columns(lower, 60, 3);
-        let (middle, right) = columns(rest, rest.width.saturating_sub(53), 3);
-        self.latents = right;
-        self.timeline = middle;
-        let (upper, lower) = rows(left, experts_rows(experts));
-        self.experts = upper;
-        (self.shares, _) = rows(rows(lower, 1).1, 10);
-    }
-}
-
-/// Side in columns of one of the four images of a row with gaps of at least one column.
-fn image_columns(width: u16) -> u16 {
-    width.saturating_sub(IMAGES - 1) / IMAGES
 }
 
 fn experts_rows(experts: usize) -> u16 {
@@ -214,47 +176,105 @@ pub fn columns(pane: Rect, left: u16, gap: u16) -> (Rect, Rect) {
 mod tests {
     use super::*;
 
-    fn all(panes: &Panes) -> Vec<Rect> {
-        let shown = [
-            panes.status,
-            panes.frames,
-            panes.strip,
-            panes.experts,
-            panes.shares,
-            panes.latents,
-            panes.position,
-            panes.timeline,
-            panes.message,
-        ];
-        shown.into_iter().filter(|pane| !pane.is_empty()).collect()
+    fn check(screen: Rect, shape: Shape) {
+        let layout = Layout::of(screen, shape);
+        let mut panes = vec![layout.status, layout.message];
+        panes.extend(layout.shown().map(|(_, rect)| rect));
+        for (i, pane) in panes.iter().enumerate() {
+            assert_eq!(pane.intersection(screen), *pane, "{screen} {shape:?}");
+            let after = &panes[i + 1..];
+            assert!(
+                after.iter().all(|other| !pane.intersects(*other)),
+                "{screen} {shape:?}: {panes:?}"
+            );
+        }
+        if shape.zoom.is_none() {
+            let timeline = layout.get(Pane::Timeline);
+            assert!(timeline.height >= LEAST_TIMELINE, "{screen} {shape:?}");
+        }
     }
 
     #[test]
     fn panes_never_overlap_nor_leave_the_screen() {
-        for width in SMALLEST.0..=210 {
-            for height in SMALLEST.1..=70 {
-                for steps in [0, 16, 48, 500] {
-                    let screen = Rect::new(0, 0, width, height);
-                    let panes = all(&Panes::of(screen, steps, 4, None));
-                    for (i, pane) in panes.iter().enumerate() {
-                        assert_eq!(pane.intersection(screen), *pane, "{width}x{height}");
-                        let after = &panes[i + 1..];
-                        assert!(
-                            after.iter().all(|other| !pane.intersects(*other)),
-                            "{width}x{height}, {steps} steps: {panes:?}"
-                        );
-                    }
+        for view in View::ALL {
+            for (width, height) in (SMALLEST.0..=210)
+                .step_by(3)
+                .flat_map(|width| (SMALLEST.1..=70).map(move |height| (width, height)))
+            {
+                let screen = Rect::new(0, 0, width, height);
+                for (steps, experts) in [(0, 0), (16, 4), (48, 3), (500, 6)] {
+                    let shape = Shape {
+                        view,
+                        steps,
+                        experts,
+                        product: experts != 3,
+                        zoom: None,
+                    };
+                    check(screen, shape);
+                    let pane = view.panes()[usize::from(width + height) % view.panes().len()];
+                    check(
+                        screen,
+                        Shape {
+                            zoom: Some(pane),
+                            ..shape
+                        },
+                    );
                 }
             }
         }
     }
 
     #[test]
-    fn a_small_terminal_shows_all_but_latents_and_strip() {
-        let panes = Panes::of(Rect::new(0, 0, 80, 24), 16, 4, None);
-        assert_eq!(panes.frames, Rect::new(1, 1, 78, 10));
-        assert_eq!(panes.timeline.height, TIMELINE_ROWS);
-        assert!(!panes.position.is_empty() && !panes.shares.is_empty());
-        assert!(panes.latents.is_empty() && panes.strip.is_empty());
+    fn borders_can_be_dragged_anywhere_and_nothing_overlaps() {
+        let mut dragged = 0;
+        for view in View::ALL {
+            for (width, height) in [(40, 12), (80, 24), (120, 40), (200, 60)] {
+                let screen = Rect::new(0, 0, width, height);
+                let shape = Shape {
+                    view,
+                    steps: 16,
+                    experts: 4,
+                    product: true,
+                    zoom: None,
+                };
+                let own = Layout::of(screen, shape);
+                let mut splits = Vec::new();
+                for i in 0..400_u16 {
+                    let layout = own.clone().moved(&splits, view);
+                    let cell = Position::new(i * 7919 % width, i * 104 % height);
+                    let Some(found) = border::at(layout.panes(), cell) else {
+                        continue;
+                    };
+                    dragged += 1;
+                    let by = (i * 31 % 61) as i16 - 30;
+                    border::set(&mut splits, own.panes(), view, found, by);
+                    let panes = own.clone().moved(&splits, view);
+                    assert_eq!(panes.panes().len(), own.panes().len());
+                    for (k, (_, pane)) in panes.shown().enumerate() {
+                        assert!(!pane.is_empty() && pane.intersection(screen) == pane);
+                        let mut others = panes.shown().skip(k + 1);
+                        assert!(others.all(|(_, other)| !pane.intersects(other)));
+                    }
+                }
+            }
+        }
+        assert!(dragged > 200, "{dragged}");
+    }
+
+    #[test]
+    fn a_zoomed_pane_is_shown() {
+        let screen = Rect::new(0, 0, 80, 24);
+        for view in View::ALL {
+            for &pane in view.panes() {
+                let shape = Shape {
+                    view,
+                    steps: 16,
+                    experts: 4,
+                    product: true,
+                    zoom: Some(pane),
+                };
+                assert!(!Layout::of(screen, shape).get(pane).is_empty(), "{pane:?}");
+            }
+        }
     }
 }

@@ -42,6 +42,42 @@ pub fn put(buf: &mut Buffer, pane: Rect, column: u16, row: u16, symbol: char, st
     }
 }
 
+/// Writes a text over as many rows as it needs, broken at blanks; returns the row after it.
+pub fn paragraph(buf: &mut Buffer, pane: Rect, row: u16, content: &str, style: Style) -> u16 {
+    let mut row = row;
+    for line in wrapped(content, usize::from(pane.width.max(1))) {
+        text(buf, pane, 0, row, &line, style);
+        row = row.saturating_add(1);
+    }
+    row
+}
+
+/// Breaks at blanks so that no line is wider than the room, unless a single word is.
+pub fn wrapped(content: &str, room: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in content.split(' ') {
+        match lines.last_mut() {
+            Some(line) if usize::from(width(line) + 1 + width(word)) <= room => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// A number of four columns at most, five with a minus; a dash for what is no number.
+pub fn short(value: f32) -> String {
+    match value.abs() {
+        size if !size.is_finite() => "–".to_owned(),
+        size if size < 9.995 => format!("{value:.2}"),
+        size if size < 99.95 => format!("{value:.1}"),
+        size if size < 9999.5 => format!("{value:.0}"),
+        _ => format!("{value:.0e}"),
+    }
+}
+
 /// A pane's first row: its title, a note at the right end, a thin rule between them.
 pub fn title(buf: &mut Buffer, pane: Rect, name: &str, note: &str, focused: bool) {
     let start = if focused {
@@ -115,6 +151,20 @@ mod tests {
             Style::new(),
         );
         assert_eq!(buf, Buffer::with_lines(["   abc    ", "        ed"]));
+    }
+
+    #[test]
+    fn long_lines_break_at_blanks() {
+        assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
+        assert_eq!(wrapped("incomprehensible", 8), ["incomprehensible"]);
+    }
+
+    #[test]
+    fn numbers_keep_to_their_column() {
+        for value in [0.0, 0.123, 9.99, 9.999, 45.6, 99.97, 1234.0, 1e8, f32::NAN] {
+            assert!(width(&short(value)) <= 4, "{value}: {}", short(value));
+            assert!(width(&short(-value)) <= 5, "{value}");
+        }
     }
 
     #[test]

@@ -10,14 +10,17 @@
 //! 1σ solid 39 %, 95 % dashed
 //! ```
 
+pub mod pulls;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::braille::{Canvas, Stroke};
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::paint::{below_title, put, right, text, title};
 use super::theme::{PREDICTION, dim, strong};
+use super::view::Pane;
 use crate::measure::ellipse::{Ellipse, ONE_SIGMA_MASS, SIGMAS_OF_95_PERCENT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 
@@ -29,7 +32,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if pane.is_empty() {
         return;
     }
-    let focused = face.is_focused(Focus::Position);
+    let focused = face.is_focused(Pane::Position);
     let Some(position) = &snapshot.position else {
         title(buf, pane, "position", "", focused);
         text(

@@ -4,9 +4,11 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::paint::{eighth, put};
-use super::theme::Depth;
+use super::face::Face;
+use super::paint::{eighth, put, text};
+use super::theme::{Depth, dim, strong};
 use crate::modality::Expert;
+use crate::session::snapshot::Snapshot;
 
 /// Draws one column. Shares of 1 in all fill the pane's height; NaN and none draw nothing.
 ///
@@ -58,6 +60,17 @@ pub fn stack(buf: &mut Buffer, pane: Rect, at: u16, shares: &[(Expert, f32)], de
             style,
         );
     }
+}
+
+/// The experts' letters from the bottom of a stack upwards, at the pane's right end.
+pub fn legend(buf: &mut Buffer, pane: Rect, row: u16, snapshot: &Snapshot, face: &Face) {
+    let letters = snapshot.experts.len() as u16 + 2;
+    let mut at = pane.width.saturating_sub(letters);
+    for view in &snapshot.experts {
+        let ink = strong().patch(face.depth.ink(view.expert.rgb()));
+        at = text(buf, pane, at, row, &view.expert.letter().to_string(), ink);
+    }
+    text(buf, pane, at + 1, row, "↑", dim());
 }
 
 /// The two that hold most of a cell, the lower one first; a cell has no more than two colours.

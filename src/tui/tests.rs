@@ -16,10 +16,11 @@ use ratatui::layout::{Position, Size};
 use ratatui::style::Color;
 
 use super::app::{App, Flow, Pointer};
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::fixture;
 use super::print::to_text;
 use super::theme::Depth;
+use super::view::{Pane, View};
 use crate::session::Session;
 use crate::session::fake::{FakePredictor, FakeSource};
 use crate::session::keymap::bindings;
@@ -93,6 +94,8 @@ keys_snapshot!(predicting, "llll llll");
 keys_snapshot!(an_expert_off, "llllllll 1");
 keys_snapshot!(tempering, "lllllll a2---");
 keys_snapshot!(a_line_being_typed, "l:ep");
+keys_snapshot!(a_command_being_chosen, "l:corrupt<down>");
+keys_snapshot!(an_input_being_damaged, "llll x");
 keys_snapshot!(frames_alone, "lllllll <enter>");
 keys_snapshot!(experts_alone, "lllllll <tab><enter>");
 keys_snapshot!(position_alone, "lllllll <s-tab><s-tab><enter>");
@@ -155,14 +158,15 @@ fn a_terminal_too_small_says_so() {
 fn the_mouse_seeks_and_switches() {
     let mut app = pressed("", SMALL);
     let face = Face::default();
-    let panes = super::panes(
+    let layout = super::layout(
         ratatui::layout::Rect::new(0, 0, SMALL.0, SMALL.1),
         &app.session.snapshot(),
         &face,
     );
+    let (timeline, experts) = (layout.get(Pane::Timeline), layout.get(Pane::Experts));
     app.point(
         Pointer::Press,
-        Position::new(panes.timeline.x + 7 + 10, panes.timeline.y + 2),
+        Position::new(timeline.x + 7 + 10, timeline.y + 2),
     );
     assert_eq!(app.session.snapshot().cursor, 5);
     app.point(Pointer::Drag, Position::new(79, 0));
@@ -171,10 +175,7 @@ fn the_mouse_seeks_and_switches() {
     app.point(Pointer::Drag, Position::new(0, 0));
     app.point(Pointer::Wheel(-1), Position::new(0, 0));
     assert_eq!(app.session.snapshot().cursor, 14);
-    app.point(
-        Pointer::Press,
-        Position::new(panes.experts.x + 4, panes.experts.y + 2),
-    );
+    app.point(Pointer::Press, Position::new(experts.x + 4, experts.y + 2));
     settle(&mut app);
     let alphas: Vec<f32> = app
         .session
@@ -184,7 +185,46 @@ fn the_mouse_seeks_and_switches() {
         .map(|view| view.alpha)
         .collect();
     assert_eq!(alphas, [1.0, 0.0, 1.0, 1.0]);
-    assert_eq!((app.face.focus, app.face.expert), (Focus::Experts, 1));
+    assert_eq!((app.face.focus, app.face.expert), (Pane::Experts, 1));
+}
+
+#[test]
+fn a_dragged_border_moves_and_a_title_is_no_step() {
+    let mut app = pressed("lll", SMALL);
+    let rect = ratatui::layout::Rect::new(0, 0, SMALL.0, SMALL.1);
+    let layout = |app: &App| super::layout(rect, &app.session.snapshot(), &app.face);
+    let (timeline, experts) = (
+        layout(&app).get(Pane::Timeline),
+        layout(&app).get(Pane::Experts),
+    );
+    app.point(Pointer::Press, Position::new(experts.x + 3, experts.y));
+    app.point(Pointer::Drag, Position::new(experts.x + 9, experts.y - 3));
+    app.point(
+        Pointer::Release,
+        Position::new(experts.x + 9, experts.y - 3),
+    );
+    app.point(Pointer::Drag, Position::new(0, 0));
+    assert_eq!(layout(&app).get(Pane::Experts).y, experts.y - 3);
+    assert_eq!(layout(&app).get(Pane::Timeline), timeline);
+    app.point(Pointer::Press, Position::new(timeline.x + 20, timeline.y));
+    assert_eq!(app.session.snapshot().cursor, 3);
+    app.point(Pointer::Release, Position::new(0, 0));
+    app.press(&Key::of_char('v'));
+    app.press(&Key::of_spelling("<enter>").unwrap());
+    screen(&app.session.snapshot(), &app.face, SMALL);
+    let switched = app.session.snapshot().state.contains("alpha");
+    assert!(!switched, "a title is no switch");
+}
+
+#[test]
+fn views_are_gone_to_by_name_and_episodes_are_listed() {
+    assert_eq!(View::ALL.map(View::name), crate::session::keymap::VIEWS);
+    let mut app = pressed(":view<space>predict<enter>", SMALL);
+    assert_eq!((app.face.view, &app.face.palette), (View::Predict, &None));
+    app.press(&Key::of_char('E'));
+    assert!(app.face.is_zoomed(Pane::Episodes));
+    app.press(&Key::of_char('E'));
+    assert!(!app.face.zoomed);
 }
 
 #[test]
@@ -199,14 +239,24 @@ fn the_state_string_goes_to_the_clipboard() {
 #[test]
 fn views_come_round() {
     let mut app = pressed("", SMALL);
-    let mut seen = Vec::new();
-    for _ in 0..6 {
+    app.press(&Key::of_char('v'));
+    for view in [
+        View::Fuse,
+        View::Predict,
+        View::Position,
+        View::Consistency,
+        View::Lattice,
+        View::Overview,
+    ] {
+        assert_eq!(app.face.view, view);
+        assert_eq!(app.face.focus, view.panes()[0]);
+        let shown = to_text(&screen(&app.session.snapshot(), &app.face, SMALL), false);
+        assert!(shown.trim_start().starts_with(view.name()), "{shown}");
+        app.press(&Key::of_spelling("<enter>").unwrap());
+        assert!(app.face.zoomed);
         app.press(&Key::of_char('v'));
-        seen.push(app.face.zoomed.then_some(app.face.focus));
+        assert!(!app.face.zoomed);
     }
-    let mut all: Vec<_> = Focus::ALL.into_iter().map(Some).collect();
-    all.push(None);
-    assert_eq!(seen, all);
 }
 
 #[test]
@@ -225,7 +275,9 @@ fn nothing_panics_at_any_size() {
     for (i, snapshot) in snapshots.iter().enumerate() {
         let widths = (1..=200_u16).step_by(9);
         for (width, height) in widths.flat_map(|w| (1..=60_u16).step_by(4).map(move |h| (w, h))) {
-            face.focus = Focus::ALL[usize::from(width + height) % 5];
+            face.open(View::ALL[usize::from(width / 9 + height / 4) % View::ALL.len()]);
+            let panes = face.view.panes();
+            face.focus = panes[usize::from(width + height) % panes.len()];
             face.zoomed = (width + i as u16).is_multiple_of(3);
             face.help = (width % 5 == 0).then_some(usize::from(height % 3));
             face.depth = if height % 2 == 0 {

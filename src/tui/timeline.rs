@@ -15,11 +15,12 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::axis::{Axis, LABELS};
-use super::face::{Face, Focus};
+use super::face::Face;
 use super::layout::rows;
 use super::paint::{column, put, right, text};
-use super::stack::stack;
+use super::stack::{legend, stack};
 use super::theme::{PREDICTION, dim, strong};
+use super::view::Pane;
 use crate::modality::Expert;
 use crate::session::command::Looping;
 use crate::session::snapshot::{Snapshot, StepPsnr};
@@ -99,7 +100,7 @@ fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .episode
         .as_ref()
         .map_or(0, |episode| episode.secs.len());
-    let mark = if face.is_focused(Focus::Timeline) {
+    let mark = if face.is_focused(Pane::Timeline) {
         "▸ step "
     } else {
         "step "
@@ -261,14 +262,7 @@ fn shares(buf: &mut Buffer, pane: Rect, axis: Axis, snapshot: &Snapshot, face: &
             stack(buf, pane, axis.column(step) + i, &shares, face.depth);
         }
     }
-    let row = pane.height - 1;
-    let letters = snapshot.experts.len() as u16 + 2;
-    let mut at = pane.width.saturating_sub(letters);
-    for view in &snapshot.experts {
-        let ink = strong().patch(face.depth.ink(view.expert.rgb()));
-        at = text(buf, pane, at, row, &view.expert.letter().to_string(), ink);
-    }
-    text(buf, pane, at + 1, row, "↑", dim());
+    legend(buf, pane, pane.height - 1, snapshot, face);
 }
 
 fn psnr(

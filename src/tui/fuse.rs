@@ -1,0 +1,11 @@
+//! The panes of the fuse view.
+
+pub mod dims;
+pub mod divergence;
+pub mod pairs;
+pub mod series;
+
+mod bounds;
+mod empty;
+
+pub use bounds::{mark, range};

@@ -1,0 +1,5 @@
+//! The panes of the predict view.
+
+pub mod fan;
+pub mod samples;
+pub mod spread;
