@@ -26,9 +26,10 @@ pub mod theme;
 pub mod view;
 
 mod axis;
+mod border;
 mod braille;
 mod consistency;
-pub mod episodes;
+mod episodes;
 mod experts;
 mod frames;
 mod fuse;
@@ -120,8 +121,18 @@ fn drawing(pane: Pane) -> fn(&mut Buffer, Rect, &Snapshot, &Face) {
     }
 }
 
-/// Where the panes are on a screen of this size.
+/// Where the panes are on a screen of this size, as the user has moved their borders.
 fn layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
+    let own = own_layout(screen, snapshot, face);
+    if face.zoomed {
+        own
+    } else {
+        own.moved(&face.splits, face.view)
+    }
+}
+
+/// Where the view itself puts them.
+fn own_layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
     let steps = snapshot
         .episode
         .as_ref()

@@ -102,7 +102,7 @@ impl Input {
             Mode::Horizon => format!("horizon {} | - = change it, Esc ends", snapshot.horizon),
             Mode::Samples => {
                 let count = snapshot.sampling.count;
-                format!("{count} samples | - = half, twice as many, Esc ends")
+                format!("{count} samples | - half, = twice as many, Esc ends")
             }
             Mode::Temper => self.temper_hint(snapshot),
             Mode::Corrupt => self.corrupt_hint(snapshot),

@@ -12,6 +12,7 @@ mod finding;
 mod lattice;
 mod random;
 mod renewing;
+mod restoring;
 mod switching;
 
 use super::fake::{FakePredictor, FakeSource};

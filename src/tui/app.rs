@@ -3,6 +3,7 @@
 use ratatui::layout::{Position, Rect, Size};
 
 use super::axis::Axis;
+use super::border::{self, Border};
 use super::experts::expert_at;
 use super::face::Face;
 use super::help;
@@ -47,6 +48,8 @@ pub struct App {
     input: Input,
     size: Size,
     seeking: bool,
+    /// A border under the pressed button, where that went down, and the border's offset then.
+    dragged: Option<(Border, Position, i16)>,
 }
 
 impl App {
@@ -59,6 +62,7 @@ impl App {
             input: Input::default(),
             size,
             seeking: false,
+            dragged: None,
         }
     }
 
@@ -112,10 +116,10 @@ impl App {
                     face.open(view);
                 }
             }
+            FaceCommand::Episodes => self.not_yet("the list of episodes"),
             FaceCommand::Difference => self.not_yet("the difference of two models"),
             FaceCommand::Blink => self.not_yet("blinking"),
             FaceCommand::Wipe => self.not_yet("the wipe"),
-            FaceCommand::Episodes => self.not_yet("the list of episodes"),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -145,10 +149,25 @@ impl App {
         let timeline = layout.get(Pane::Timeline);
         match pointer {
             Pointer::Wheel(by) => self.session.apply(Command::Step(by)),
-            Pointer::Release => self.seeking = false,
+            Pointer::Release => {
+                self.seeking = false;
+                self.dragged = None;
+            }
             Pointer::Drag if self.seeking => self.seek(timeline, at, &snapshot),
-            Pointer::Drag => {}
+            Pointer::Drag => {
+                if let Some((border, from, by)) = self.dragged {
+                    let own = super::own_layout(screen, &snapshot, &self.face);
+                    let by = by.saturating_add(border.side.way(from, at));
+                    let (face, panes) = (&mut self.face, own.panes());
+                    border::set(&mut face.splits, panes, face.view, border, by);
+                }
+            }
             Pointer::Press => {
+                let border = border::at(layout.panes(), at).filter(|_| !self.face.zoomed);
+                self.dragged = border.map(|border| {
+                    let by = border::offset(&self.face.splits, self.face.view, border);
+                    (border, at, by)
+                });
                 let Some((pane, rect)) = layout.at(at) else {
                     return;
                 };
@@ -156,6 +175,8 @@ impl App {
                     self.face.focus = pane;
                 }
                 match pane {
+                    // Its title: a border, not a step.
+                    _ if self.dragged.is_some() => {}
                     Pane::Timeline => {
                         self.seeking = true;
                         self.seek(rect, at, &snapshot);

@@ -1,5 +1,6 @@
 //! What only this face knows: where the focus is, what lies over the screen, what the terminal can show.
 
+use super::border::Split;
 use super::episodes::list::List;
 use super::pixels::Pixels;
 use super::theme::Depth;
@@ -23,6 +24,8 @@ pub struct Face {
     pub prompt: Option<String>,
     /// What can be chosen while a line is typed.
     pub palette: Option<PaletteView>,
+    /// Borders between panes that have been moved.
+    pub splits: Vec<Split>,
     /// The expert whose Gaussian is shown beside the belief, by its place in the list.
     pub expert: usize,
     /// The chosen cell of the lattice.
@@ -44,6 +47,7 @@ impl Default for Face {
             help: None,
             prompt: None,
             palette: None,
+            splits: Vec::new(),
             expert: 0,
             lattice_cell: 0,
             depth: Depth::default(),

@@ -11,6 +11,7 @@ mod predict;
 
 use ratatui::layout::{Position, Rect};
 
+use super::border::{self, Placed, Split};
 use super::view::{Pane, View};
 
 /// The smallest screen that is drawn at all.
@@ -80,6 +81,11 @@ impl Layout {
         found.map(|&(_, rect)| rect).unwrap_or_default()
     }
 
+    /// All of them at once.
+    pub fn panes(&self) -> &[Placed] {
+        &self.panes
+    }
+
     /// The panes that are shown, none of them empty.
     pub fn shown(&self) -> impl Iterator<Item = (Pane, Rect)> {
         self.panes.iter().copied()
@@ -88,6 +94,13 @@ impl Layout {
     /// The pane at a cell of the screen.
     pub fn at(&self, cell: Position) -> Option<(Pane, Rect)> {
         self.shown().find(|(_, rect)| rect.contains(cell))
+    }
+
+    /// The same with some borders of a view moved.
+    #[must_use]
+    pub fn moved(mut self, splits: &[Split], view: View) -> Self {
+        self.panes = border::apply(&self.panes, splits, view);
+        self
     }
 
     /// Puts a pane somewhere; nowhere, if there is no room.
@@ -209,6 +222,43 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn borders_can_be_dragged_anywhere_and_nothing_overlaps() {
+        let mut dragged = 0;
+        for view in View::ALL {
+            for (width, height) in [(40, 12), (80, 24), (120, 40), (200, 60)] {
+                let screen = Rect::new(0, 0, width, height);
+                let shape = Shape {
+                    view,
+                    steps: 16,
+                    experts: 4,
+                    product: true,
+                    zoom: None,
+                };
+                let own = Layout::of(screen, shape);
+                let mut splits = Vec::new();
+                for i in 0..400_u16 {
+                    let layout = own.clone().moved(&splits, view);
+                    let cell = Position::new(i * 7919 % width, i * 104 % height);
+                    let Some(found) = border::at(layout.panes(), cell) else {
+                        continue;
+                    };
+                    dragged += 1;
+                    let by = (i * 31 % 61) as i16 - 30;
+                    border::set(&mut splits, own.panes(), view, found, by);
+                    let panes = own.clone().moved(&splits, view);
+                    assert_eq!(panes.panes().len(), own.panes().len());
+                    for (k, (_, pane)) in panes.shown().enumerate() {
+                        assert!(!pane.is_empty() && pane.intersection(screen) == pane);
+                        let mut others = panes.shown().skip(k + 1);
+                        assert!(others.all(|(_, other)| !pane.intersects(other)));
+                    }
+                }
+            }
+        }
+        assert!(dragged > 200, "{dragged}");
     }
 
     #[test]

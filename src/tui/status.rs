@@ -87,9 +87,18 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let warning = strong().patch(face.depth.ink(WARNING));
     if let Some(prompt) = &face.prompt {
-        let at = text(buf, pane, 0, 0, prompt, strong());
         if prompt.starts_with(':') {
+            // The end of a long line is where it is typed.
+            let line = ending(prompt, pane.width.saturating_sub(1));
+            let at = text(buf, pane, 0, 0, line, strong());
             text(buf, pane, at, 0, "▏", Style::new());
+        } else {
+            let (now, keys) = prompt.split_once(" | ").unwrap_or((prompt, ""));
+            let at = text(buf, pane, 0, 0, now, strong());
+            if !keys.is_empty() {
+                let at = text(buf, pane, at, 0, " | ", dim());
+                keys_of(buf, pane, at, keys);
+            }
         }
         return;
     }
@@ -125,6 +134,23 @@ pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     } else {
         hints(buf, pane);
     }
+}
+
+/// The keys of a mode, as many as there is room for: the most useful ones stand first.
+fn keys_of(buf: &mut Buffer, pane: Rect, mut at: u16, keys: &str) {
+    for key in keys.split(", ") {
+        if at + width(key) > pane.width {
+            return;
+        }
+        at = text(buf, pane, at, 0, key, dim()) + 2;
+    }
+}
+
+/// The last characters of a text that so many columns hold.
+fn ending(text: &str, columns: u16) -> &str {
+    let starts = text.char_indices().map(|(start, _)| &text[start..]);
+    let mut fitting = starts.filter(|rest| width(rest) <= columns);
+    fitting.next().unwrap_or("")
 }
 
 /// As many keys as there is room for, the way to all the others always among them.

@@ -94,6 +94,8 @@ keys_snapshot!(predicting, "llll llll");
 keys_snapshot!(an_expert_off, "llllllll 1");
 keys_snapshot!(tempering, "lllllll a2---");
 keys_snapshot!(a_line_being_typed, "l:ep");
+keys_snapshot!(a_command_being_chosen, "l:corrupt<down>");
+keys_snapshot!(an_input_being_damaged, "llll x");
 keys_snapshot!(frames_alone, "lllllll <enter>");
 keys_snapshot!(experts_alone, "lllllll <tab><enter>");
 keys_snapshot!(position_alone, "lllllll <s-tab><s-tab><enter>");
@@ -184,6 +186,34 @@ fn the_mouse_seeks_and_switches() {
         .collect();
     assert_eq!(alphas, [1.0, 0.0, 1.0, 1.0]);
     assert_eq!((app.face.focus, app.face.expert), (Pane::Experts, 1));
+}
+
+#[test]
+fn a_dragged_border_moves_and_a_title_is_no_step() {
+    let mut app = pressed("lll", SMALL);
+    let rect = ratatui::layout::Rect::new(0, 0, SMALL.0, SMALL.1);
+    let layout = |app: &App| super::layout(rect, &app.session.snapshot(), &app.face);
+    let (timeline, experts) = (
+        layout(&app).get(Pane::Timeline),
+        layout(&app).get(Pane::Experts),
+    );
+    app.point(Pointer::Press, Position::new(experts.x + 3, experts.y));
+    app.point(Pointer::Drag, Position::new(experts.x + 9, experts.y - 3));
+    app.point(
+        Pointer::Release,
+        Position::new(experts.x + 9, experts.y - 3),
+    );
+    app.point(Pointer::Drag, Position::new(0, 0));
+    assert_eq!(layout(&app).get(Pane::Experts).y, experts.y - 3);
+    assert_eq!(layout(&app).get(Pane::Timeline), timeline);
+    app.point(Pointer::Press, Position::new(timeline.x + 20, timeline.y));
+    assert_eq!(app.session.snapshot().cursor, 3);
+    app.point(Pointer::Release, Position::new(0, 0));
+    app.press(&Key::of_char('v'));
+    app.press(&Key::of_spelling("<enter>").unwrap());
+    screen(&app.session.snapshot(), &app.face, SMALL);
+    let switched = app.session.snapshot().state.contains("alpha");
+    assert!(!switched, "a title is no switch");
 }
 
 #[test]

@@ -6,14 +6,15 @@ const FOUND: i32 = 1;
 const NEXT: i32 = 8;
 /// More where it begins a word.
 const BEGINS: i32 = 7;
+/// More where it begins the name.
+const FIRST: i32 = 3;
 /// Less where something stands between it and the one before it.
 const GAP: i32 = 3;
 /// What a letter must be worth on average: letters here and there in a sentence are no find.
 const LEAST: i32 = 2;
 
 /// The best way to find the letters of `typed` in `name` in their order, without regard to case and blanks; none
-/// where there is no good way. Letters in a row and beginnings of words count for more; of two names that fit alike the
-/// shorter one wins.
+/// where there is no good way. Letters in a row and beginnings of words count for more.
 pub fn score(typed: &str, name: &str) -> Option<i32> {
     let typed: Vec<char> = lower(typed).filter(|c| !c.is_whitespace()).collect();
     let name: Vec<char> = lower(name).collect();
@@ -22,7 +23,7 @@ pub fn score(typed: &str, name: &str) -> Option<i32> {
     };
     let worth = |at: usize| {
         let begins = at == 0 || !name[at - 1].is_alphanumeric();
-        FOUND + i32::from(begins) * BEGINS
+        FOUND + i32::from(begins) * BEGINS + i32::from(at == 0) * FIRST
     };
     // The best score of the letters so far with the last of them at each place of the name.
     let mut best: Vec<Option<i32>> = (0..name.len())
@@ -47,8 +48,7 @@ pub fn score(typed: &str, name: &str) -> Option<i32> {
         best = next;
     }
     let score = best.into_iter().flatten().max()?;
-    let (letters, length) = (typed.len() as i32, name.len() as i32);
-    (score >= LEAST * letters).then(|| score * 100 - length)
+    (score >= LEAST * typed.len() as i32).then_some(score)
 }
 
 fn lower(text: &str) -> impl Iterator<Item = char> {
@@ -67,13 +67,13 @@ mod tests {
     }
 
     #[test]
-    fn words_rows_and_short_names_win() {
+    fn words_and_rows_win() {
         better("vf", "view fuse", "leave off");
         better("noise", "corrupt vision noise", "none of its images seen");
-        better("undo", "undo", "undo or do");
+        better("ep", "episode N or NAME", "next episode");
         better("ce", "context end", "science");
         better("conte", "context N", "other controls, Esc ends");
-        assert_eq!(score("nose", "then a digit: only this sensor there"), None);
+        assert_eq!(score("aaaa", "bab bab bab bab"), None, "here and there");
         better("corvis", "corrupt vision zero", "colour of the visible");
         assert_eq!(score("xyz", "corrupt vision zero"), None);
         assert_eq!(score("ba", "ab"), None);

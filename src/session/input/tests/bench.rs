@@ -252,7 +252,7 @@ fn samples_double_and_halve_within_bounds() {
     let (_, hint) = played("M==", &mut at);
     assert_eq!(
         hint.unwrap(),
-        "128 samples | - = half, twice as many, Esc ends"
+        "128 samples | - half, = twice as many, Esc ends"
     );
     played("M==========", &mut at);
     assert_eq!(at.sampling.count, 1024);
