@@ -8,6 +8,7 @@ use crate::episode::{Frame, PlanarPose, Split};
 use crate::modality::{Expert, ExpertSet};
 use crate::session::command::{Looping, Scope};
 use crate::session::settings::Sampling;
+use crate::session::snapshot::other::OtherView;
 use crate::session::snapshot::{
     Badge, EpisodeView, ErrorOf, Estimate, Event, EventKind, ExpertView, FrameRow, LatentView,
     ModelInfo, PositionView, SignedFrame, Snapshot, StepPsnr, StripCell,
@@ -134,6 +135,38 @@ fn position(cursor: usize, steps: usize) -> PositionView {
         belief_error_m: Some(0.004),
         prediction_error_m: predicted(cursor).map(|_| 0.012),
     }
+}
+
+/// Adds a second model whose prediction lags behind.
+pub fn compare(snapshot: &mut Snapshot) {
+    let step = snapshot.cursor;
+    let (now, _, prediction) = frames(step);
+    let (_, _, lagging) = frames(step.saturating_sub(2));
+    let minus = |a: &Frame, b: &Frame| {
+        Arc::new(SignedFrame {
+            width: 64,
+            height: 64,
+            values: std::iter::zip(&a.pixels, &b.pixels)
+                .map(|(&a, &b)| i16::from(a) - i16::from(b))
+                .collect(),
+        })
+    };
+    let mut model = (*snapshot.models[0]).clone();
+    "vhp".clone_into(&mut model.name);
+    snapshot.models.push(Arc::new(model));
+    snapshot.other = Some(Arc::new(OtherView {
+        model: 1,
+        difference: Some(minus(&prediction, &lagging)),
+        frames: FrameRow {
+            error: Some(minus(&lagging, &now)),
+            prediction: Some(Arc::new(lagging)),
+            ..snapshot.frames.clone()
+        },
+        strip: Arc::clone(&snapshot.strip),
+        position: snapshot.position.clone(),
+        psnr_db: Arc::clone(&snapshot.psnr_db),
+        fault: None,
+    }));
 }
 
 /// The session at a step of an episode of so many.
