@@ -1,12 +1,17 @@
 //! Keys, clicks and drags in; commands to the session and changes of the face out. Knows no terminal.
 
+use std::time::Duration;
+
 use ratatui::layout::{Position, Rect, Size};
 
 use super::axis::Axis;
 use super::border::{self, Border};
+use super::compare::{BLINK, Compare};
 use super::experts::expert_at;
 use super::face::Face;
+use super::frames::part_of_compared;
 use super::help;
+use super::lattice::set_at;
 use super::view::{Pane, View};
 use crate::session::Session;
 use crate::session::command::Command;
@@ -37,6 +42,17 @@ pub enum Pointer {
     Wheel(i64),
 }
 
+/// What the pressed button holds.
+#[derive(Clone, Copy)]
+enum Drag {
+    /// The cursor.
+    Timeline,
+    /// The border between two images.
+    Wipe,
+    /// A border between two panes: where the button went down, and the border's offset then.
+    Border(Border, Position, i16),
+}
+
 /// A session with a face.
 pub struct App {
     /// What is looked at.
@@ -47,9 +63,9 @@ pub struct App {
     pub to_copy: Option<String>,
     input: Input,
     size: Size,
-    seeking: bool,
-    /// A border under the pressed button, where that went down, and the border's offset then.
-    dragged: Option<(Border, Position, i16)>,
+    dragged: Option<Drag>,
+    /// How long the present image of a blinking pair has been shown.
+    blinked: Duration,
 }
 
 impl App {
@@ -61,8 +77,8 @@ impl App {
             to_copy: None,
             input: Input::default(),
             size,
-            seeking: false,
             dragged: None,
+            blinked: Duration::ZERO,
         }
     }
 
@@ -72,15 +88,49 @@ impl App {
         self.face.help = self.face.help.filter(|&page| page < help::pages(size));
     }
 
+    /// Lets time pass for playback, for what was computed and for what blinks; whether anything looks other than before.
+    pub fn tick(&mut self, dt: Duration) -> bool {
+        let changed = self.session.update(dt);
+        let Compare::Blink(other) = self.face.compare else {
+            return changed;
+        };
+        self.blinked += dt;
+        if self.blinked < BLINK {
+            return changed;
+        }
+        // However late, it changes over once: nothing is caught up with.
+        self.blinked = Duration::ZERO;
+        self.face.compare = Compare::Blink(!other);
+        true
+    }
+
+    /// How long nothing happens by itself; none: until a key, or until something is computed.
+    pub fn next_wake(&self) -> Option<Duration> {
+        let blink = matches!(self.face.compare, Compare::Blink(_))
+            .then(|| BLINK.saturating_sub(self.blinked));
+        [self.session.next_wake(), blink]
+            .into_iter()
+            .flatten()
+            .min()
+    }
+
     /// Takes one key.
     pub fn press(&mut self, key: &Key) -> Flow {
         let snapshot = self.session.snapshot();
-        let flow = match self.input.press(key, &snapshot) {
+        self.press_on(key, &snapshot)
+    }
+
+    /// Takes one key as it is meant on this snapshot.
+    pub(super) fn press_on(&mut self, key: &Key, snapshot: &Snapshot) -> Flow {
+        if self.choose_set(key, snapshot) {
+            return Flow::Go;
+        }
+        let flow = match self.input.press(key, snapshot) {
             Some(Action::Session(command)) => {
                 self.session.apply(command);
                 Flow::Go
             }
-            Some(Action::Face(command)) => self.face_command(command, &snapshot),
+            Some(Action::Face(command)) => self.face_command(command, snapshot),
             Some(Action::Explain { error, text }) => {
                 self.session.say(Message { error, text });
                 Flow::Go
@@ -92,6 +142,30 @@ impl App {
         self.face.prompt = self.input.hint(&snapshot);
         self.face.palette = self.input.palette(&snapshot);
         flow
+    }
+
+    /// In the lattice up and down choose a set and Enter switches to it; whether the key was one of these.
+    fn choose_set(&mut self, key: &Key, snapshot: &Snapshot) -> bool {
+        let face = &mut self.face;
+        let meant = face.view == View::Lattice && face.focus == Pane::Sets && face.help.is_none();
+        let Some(lattice) = snapshot.lattice.as_ref() else {
+            return false;
+        };
+        let count = lattice.cells.len();
+        if !meant || self.input.mode().is_some() || count == 0 {
+            return false;
+        }
+        let chosen = face.lattice_cell.min(count - 1);
+        match key.name() {
+            "<up>" => face.lattice_cell = (chosen + count - 1) % count,
+            "<down>" => face.lattice_cell = (chosen + 1) % count,
+            "<enter>" => {
+                let active = lattice.cells[chosen].active.clone();
+                self.session.apply(Command::UseSet(active));
+            }
+            _ => return false,
+        }
+        true
     }
 
     fn face_command(&mut self, command: FaceCommand, snapshot: &Snapshot) -> Flow {
@@ -117,9 +191,12 @@ impl App {
                 }
             }
             FaceCommand::Episodes => self.not_yet("the list of episodes"),
-            FaceCommand::Difference => self.not_yet("the difference of two models"),
-            FaceCommand::Blink => self.not_yet("blinking"),
-            FaceCommand::Wipe => self.not_yet("the wipe"),
+            FaceCommand::Difference => face.compare = face.compare.difference(),
+            FaceCommand::Blink => {
+                self.blinked = Duration::ZERO;
+                face.compare = face.compare.blink();
+            }
+            FaceCommand::Wipe => face.compare = face.compare.wipe(),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -149,24 +226,23 @@ impl App {
         let timeline = layout.get(Pane::Timeline);
         match pointer {
             Pointer::Wheel(by) => self.session.apply(Command::Step(by)),
-            Pointer::Release => {
-                self.seeking = false;
-                self.dragged = None;
-            }
-            Pointer::Drag if self.seeking => self.seek(timeline, at, &snapshot),
-            Pointer::Drag => {
-                if let Some((border, from, by)) = self.dragged {
+            Pointer::Release => self.dragged = None,
+            Pointer::Drag => match self.dragged {
+                Some(Drag::Timeline) => self.seek(timeline, at, &snapshot),
+                Some(Drag::Wipe) => self.wipe(layout.get(Pane::Frames), at, &snapshot),
+                Some(Drag::Border(border, from, by)) => {
                     let own = super::own_layout(screen, &snapshot, &self.face);
                     let by = by.saturating_add(border.side.way(from, at));
                     let (face, panes) = (&mut self.face, own.panes());
                     border::set(&mut face.splits, panes, face.view, border, by);
                 }
-            }
+                None => {}
+            },
             Pointer::Press => {
                 let border = border::at(layout.panes(), at).filter(|_| !self.face.zoomed);
                 self.dragged = border.map(|border| {
                     let by = border::offset(&self.face.splits, self.face.view, border);
-                    (border, at, by)
+                    Drag::Border(border, at, by)
                 });
                 let Some((pane, rect)) = layout.at(at) else {
                     return;
@@ -178,8 +254,17 @@ impl App {
                     // Its title: a border, not a step.
                     _ if self.dragged.is_some() => {}
                     Pane::Timeline => {
-                        self.seeking = true;
+                        self.dragged = Some(Drag::Timeline);
                         self.seek(rect, at, &snapshot);
+                    }
+                    Pane::Frames => {
+                        self.dragged = Some(Drag::Wipe);
+                        self.wipe(rect, at, &snapshot);
+                    }
+                    Pane::Sets => {
+                        if let Some(set) = set_at(rect, at, &snapshot, &self.face) {
+                            self.face.lattice_cell = set;
+                        }
                     }
                     Pane::Experts => {
                         if let Some(expert) = expert_at(at.y - rect.y, snapshot.experts.len()) {
@@ -191,6 +276,15 @@ impl App {
                     _ => {}
                 }
             }
+        }
+    }
+
+    /// Moves the border of a wipe to the mouse.
+    fn wipe(&mut self, frames: Rect, at: Position, snapshot: &Snapshot) {
+        if matches!(self.face.compare, Compare::Wipe(_))
+            && let Some(border) = part_of_compared(frames, at, snapshot, &self.face)
+        {
+            self.face.compare = Compare::Wipe(border);
         }
     }
 

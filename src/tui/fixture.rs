@@ -170,6 +170,38 @@ pub fn other(cursor: usize, steps: usize) -> Option<Arc<OtherView>> {
     }))
 }
 
+/// Adds a second model whose prediction lags behind.
+pub fn compare(snapshot: &mut Snapshot) {
+    let step = snapshot.cursor;
+    let (now, _, prediction) = frames(step);
+    let (_, _, lagging) = frames(step.saturating_sub(2));
+    let minus = |a: &Frame, b: &Frame| {
+        Arc::new(SignedFrame {
+            width: 64,
+            height: 64,
+            values: std::iter::zip(&a.pixels, &b.pixels)
+                .map(|(&a, &b)| i16::from(a) - i16::from(b))
+                .collect(),
+        })
+    };
+    let mut model = (*snapshot.models[0]).clone();
+    "vhp".clone_into(&mut model.name);
+    snapshot.models.push(Arc::new(model));
+    snapshot.other = Some(Arc::new(OtherView {
+        model: 1,
+        difference: Some(minus(&prediction, &lagging)),
+        frames: FrameRow {
+            error: Some(minus(&lagging, &now)),
+            prediction: Some(Arc::new(lagging)),
+            ..snapshot.frames.clone()
+        },
+        strip: Arc::clone(&snapshot.strip),
+        position: snapshot.position.clone(),
+        psnr_db: Arc::clone(&snapshot.psnr_db),
+        fault: None,
+    }));
+}
+
 /// The session at a step of an episode of so many.
 pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
     let (now, belief, prediction) = frames(cursor);
