@@ -122,6 +122,13 @@ impl App {
 
     /// Takes one key as it is meant on this snapshot.
     pub(super) fn press_on(&mut self, key: &Key, snapshot: &Snapshot) -> Flow {
+        let flow = self.take(key, snapshot);
+        // Only what a key has opened is computed.
+        self.session.want(self.face.wants());
+        flow
+    }
+
+    fn take(&mut self, key: &Key, snapshot: &Snapshot) -> Flow {
         if self.choose_set(key, snapshot) {
             return Flow::Go;
         }

@@ -5,8 +5,9 @@ use super::compare::Compare;
 use super::episodes::list::List;
 use super::pixels::Pixels;
 use super::theme::Depth;
-use super::view::{Pane, View, Wants};
+use super::view::{Pane, View};
 use crate::session::palette::PaletteView;
+use crate::session::wants::Wants;
 
 /// View-only state; nothing of it changes what is computed, but for what a view [`wants`](Face::wants).
 #[derive(Debug)]

@@ -5,6 +5,8 @@
 //! Tab  the next pane of the view; Enter shows it alone
 //! ```
 
+use crate::session::wants::Wants;
+
 /// One question to an episode, as a screen of panes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
@@ -21,17 +23,6 @@ pub enum View {
     Consistency,
     /// Every set of experts at once.
     Lattice,
-}
-
-/// What a view needs computed that nothing else does.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Wants {
-    /// Every set of experts.
-    pub lattice: bool,
-    /// The rollout's spread in three ways.
-    pub spread: bool,
-    /// Consistency over a split.
-    pub board: bool,
 }
 
 /// A part of the screen that can have the focus and fill the screen.
@@ -130,6 +121,7 @@ impl View {
         Wants {
             lattice: self == Self::Lattice,
             spread: matches!(self, Self::Predict | Self::Position),
+            response: self == Self::Fuse,
             board: self == Self::Consistency,
         }
     }
