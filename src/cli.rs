@@ -55,12 +55,22 @@ pub struct ViewArgs {
     /// Draw one frame to standard output and exit
     #[arg(long)]
     pub print: bool,
+    /// Print what the frame says as text instead, a labelled fact a line, for scripts and screen readers
+    #[arg(long, conflicts_with = "json")]
+    pub plain: bool,
+    /// Print everything the frame is drawn from as JSON instead; only the rows of all decoded frames (`strip`) are
+    /// left out, and numbers that are not finite are null
+    #[arg(long)]
+    pub json: bool,
     /// Size of the printed frame, in columns x rows
     #[arg(long, default_value = "80x24", value_parser = parse_size)]
     pub size: (u16, u16),
     /// How to draw images: `auto` asks the terminal
     #[arg(long, value_enum, default_value_t)]
     pub images: ImageProtocol,
+    /// How many colours to use: `auto` goes by TERM, COLORTERM and NO_COLOR
+    #[arg(long, value_enum, default_value_t)]
+    pub color: Colors,
     /// Where the dataset has its roles.
     #[command(flatten)]
     pub mapping: TopicArgs,
@@ -88,6 +98,24 @@ pub enum ImageProtocol {
     Sixel,
     /// iTerm2's inline images.
     Iterm2,
+}
+
+/// How many colours the terminal has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Colors {
+    /// As the environment says.
+    #[default]
+    Auto,
+    /// 24 bits.
+    True,
+    /// The 256 indexed ones.
+    #[value(name = "256")]
+    Indexed,
+    /// The terminal's own 16.
+    #[value(name = "16")]
+    Sixteen,
+    /// None: letters and fills say everything.
+    Never,
 }
 
 /// Arguments of `info`.

@@ -14,7 +14,8 @@
 //! status::message   message, prompt, warning or a few keys
 //! ```
 //! One file a pane; [`layout`] says where each stands, [`face`] holds what only this face knows, [`app`] turns keys
-//! and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text.
+//! and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text,
+//! [`plain()`] what it says.
 
 pub mod app;
 pub mod face;
@@ -31,6 +32,7 @@ mod help;
 mod image;
 mod latents;
 mod paint;
+mod plain;
 mod position;
 mod print;
 mod shares;
@@ -49,6 +51,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 pub use face::Face;
+pub use plain::plain;
 pub use print::print;
 
 use crate::session::snapshot::Snapshot;
