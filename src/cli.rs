@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::data::Role;
 use crate::episode::Split;
+use crate::measure::failure::Order;
 use crate::model::config::Preset;
 
 /// Look inside a product-of-experts fusion.
@@ -55,12 +56,28 @@ pub struct ViewArgs {
     /// Draw one frame to standard output and exit
     #[arg(long)]
     pub print: bool,
+    /// Print what the frame says as text instead, a labelled fact a line, for scripts and screen readers
+    #[arg(long, conflicts_with = "json")]
+    pub plain: bool,
+    /// Print everything the frame is drawn from as JSON instead; only the rows of all decoded frames (`strip`) are
+    /// left out, and numbers that are not finite are null
+    #[arg(long)]
+    pub json: bool,
     /// Size of the printed frame, in columns x rows
     #[arg(long, default_value = "80x24", value_parser = parse_size)]
     pub size: (u16, u16),
     /// How to draw images: `auto` asks the terminal
     #[arg(long, value_enum, default_value_t)]
     pub images: ImageProtocol,
+    /// Print the episodes ranked by how badly the model does on them, the worst first, a line each with tabs between
+    #[arg(long, conflicts_with_all = ["json", "plain"])]
+    pub failures: bool,
+    /// What failures are ranked by: `error`, `distance`, `nees`, `conflict`, `gain` or `escape` [default: error]
+    #[arg(long, value_name = "ORDER", value_parser = parse_order)]
+    pub rank: Option<Order>,
+    /// How many colours to use: `auto` goes by TERM, COLORTERM and NO_COLOR
+    #[arg(long, value_enum, default_value_t)]
+    pub color: Colors,
     /// Where the dataset has its roles.
     #[command(flatten)]
     pub mapping: TopicArgs,
@@ -88,6 +105,24 @@ pub enum ImageProtocol {
     Sixel,
     /// iTerm2's inline images.
     Iterm2,
+}
+
+/// How many colours the terminal has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Colors {
+    /// As the environment says.
+    #[default]
+    Auto,
+    /// 24 bits.
+    True,
+    /// The 256 indexed ones.
+    #[value(name = "256")]
+    Indexed,
+    /// The terminal's own 16.
+    #[value(name = "16")]
+    Sixteen,
+    /// None: letters and fills say everything.
+    Never,
 }
 
 /// Arguments of `info`.
@@ -262,6 +297,13 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
 
 fn parse_split(text: &str) -> Result<Split, String> {
     Split::from_name(text).ok_or_else(|| format!("{text:?} is not train, val or test"))
+}
+
+fn parse_order(name: &str) -> Result<Order, String> {
+    Order::from_name(name).ok_or_else(|| {
+        let names = Order::ALL.map(Order::name).join(", ");
+        format!("there are {names}")
+    })
 }
 
 fn parse_topic(text: &str) -> Result<(Role, String), String> {

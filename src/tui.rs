@@ -15,7 +15,8 @@
 //! status::message   message, prompt, warning or a few keys
 //! ```
 //! This is the overview; [`view`] lists the other views and the panes of each. One file a pane; [`layout`] says where
-//! each stands, [`face`] holds what only this face knows, [`app`] turns keys and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text.
+//! each stands, [`face`] holds what only this face knows, [`app`] turns keys and clicks into commands, [`terminal`] runs
+//! it all, [`print()`] writes a frame as text, [`plain()`] what it says.
 
 pub mod app;
 pub mod compare;
@@ -40,6 +41,7 @@ mod latents;
 mod lattice;
 mod paint;
 mod palette;
+mod plain;
 mod plane;
 mod plot;
 mod position;
@@ -63,6 +65,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 pub use face::Face;
+pub use plain::plain;
 pub use print::print;
 
 use crate::session::snapshot::{Badge, Snapshot};

@@ -1,6 +1,9 @@
 //! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
 
+mod cache;
+mod failures;
 mod follow;
+mod report;
 
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
@@ -12,8 +15,9 @@ use ratatui::layout::Size;
 use ratatui_image::picker::ProtocolType;
 
 use self::follow::{Follower, Watched};
+use self::report::Report;
 use super::{sample, say};
-use crate::cli::{ImageProtocol, ViewArgs};
+use crate::cli::{Colors, ImageProtocol, ViewArgs};
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
 use crate::model::checkpoint::{self, CONFIG};
@@ -24,7 +28,6 @@ use crate::session::keys::{Key, parse_script};
 use crate::session::predict::Predictor;
 use crate::tui::app::{App, Flow};
 use crate::tui::face::Face;
-use crate::tui::print;
 use crate::tui::terminal::{self, Ended, Images};
 use crate::tui::theme::Depth;
 
@@ -34,8 +37,9 @@ const PATIENCE: Duration = Duration::from_mins(2);
 /// Opens and shows.
 pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     let keys = parse_script(args.keys.as_deref().unwrap_or_default()).context("--keys")?;
-    let in_terminal = !args.print && io::stdout().is_terminal();
-    if !in_terminal && !args.print {
+    let report = Report::asked(&args);
+    let in_terminal = report.is_none() && io::stdout().is_terminal();
+    if !in_terminal && report.is_none() {
         eprintln!(
             "poescope: standard output is no terminal, so one frame is drawn as with --print"
         );
@@ -46,21 +50,33 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         args.size
     };
     let face = Face {
-        depth: depth(in_terminal),
+        depth: depth(args.color, in_terminal),
         ..Face::default()
     };
     let (session, watched) = open(&args)?;
     let mut app = App::new(session, face, Size::new(size.0, size.1));
+    if let Some(cache) = cache::Folder::of_user() {
+        app.session.keep_scores_in(Arc::new(cache));
+    }
     if let Some(state) = args.state {
         app.session.apply(Command::Restore(state));
+    }
+    if let Some(order) = args.rank {
+        app.session.apply(Command::RankBy(order));
+    }
+    if report == Some(Report::Failures) {
+        wait(&mut app)?;
+        app.session.apply(Command::Failure(1));
     }
     if send(&mut app, &keys)? == Flow::Quit {
         return Ok(());
     }
     if !in_terminal {
         wait(&mut app)?;
-        return say(&print(&app.session.snapshot(), &app.face, size));
+        let report = report.unwrap_or(Report::Frame);
+        return say(&report.of(app.session.snapshot(), &app.face, size)?);
     }
+    app.session.survey();
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
     let _follower = follower.context("starting a thread to watch the models")?;
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
@@ -114,10 +130,15 @@ fn wait(app: &mut App) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// A printed frame goes to a file or a pager, which says nothing of colours, so only `NO_COLOR` counts there.
-fn depth(in_terminal: bool) -> Depth {
+/// A printed frame goes to a file or a pager, which says nothing of colours, so only `NO_COLOR` counts there. What was
+/// asked for by name wins over all.
+fn depth(colors: Colors, in_terminal: bool) -> Depth {
     let variable = |name: &str| std::env::var(name).ok();
     match Depth::detect(variable) {
+        _ if colors == Colors::True => Depth::True,
+        _ if colors == Colors::Indexed => Depth::Indexed,
+        _ if colors == Colors::Sixteen => Depth::Sixteen,
+        _ if colors == Colors::Never => Depth::Plain,
         depth if in_terminal => depth,
         _ if variable("NO_COLOR").is_some_and(|value| !value.is_empty()) => Depth::Plain,
         _ => Depth::True,

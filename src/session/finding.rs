@@ -10,9 +10,7 @@ use crate::measure::failure::Order;
 impl Session {
     /// So many places on in the queue of failures; where nothing is scored yet, once everything is.
     pub(super) fn failure(&mut self, by: i64) {
-        if self.survey.is_none() {
-            self.start_survey();
-        }
+        self.survey();
         if self.table.view().queue.is_empty() && self.survey_runs() {
             self.awaiting_failure = Some(by);
             self.inform("scoring every episode first".to_owned());

@@ -26,14 +26,14 @@ struct Wanted {
 }
 
 impl Session {
-    /// Looks at every episode in the background from now on, and keeps the scores in `cache`.
-    pub fn survey(&mut self, cache: Option<Arc<dyn Cache>>) {
-        self.cache = cache;
-        self.start_survey();
+    /// Keeps the scores of a survey there, and looks there first; to be said before one begins.
+    pub fn keep_scores_in(&mut self, cache: Arc<dyn Cache>) {
+        self.cache = Some(cache);
     }
 
-    /// Starts it, once, where there is something to look at.
-    pub(super) fn start_survey(&mut self) {
+    /// Looks at every episode in the background from now on, where there is something to look at. A command that needs
+    /// the scores starts it as well.
+    pub fn survey(&mut self) {
         if self.survey.is_some() || self.models.is_empty() || self.source.metas().is_empty() {
             return;
         }
@@ -64,8 +64,10 @@ impl Session {
 
     /// Asks for what is wanted now and is not yet asked for.
     pub(super) fn ask_survey(&mut self) {
-        if self.wants.board {
-            self.start_survey_once();
+        if self.wants.board && self.survey.is_none() {
+            // It asks for itself.
+            self.survey();
+            return;
         }
         let split = self
             .source
@@ -111,12 +113,6 @@ impl Session {
         if other_model {
             self.table.take(&[]);
             self.board = None;
-        }
-    }
-
-    fn start_survey_once(&mut self) {
-        if self.survey.is_none() {
-            self.start_survey();
         }
     }
 

@@ -1,4 +1,4 @@
-//! Images as cells: two pixels a half-block, or one character of an ASCII ramp where there are no colours.
+//! Images as cells: two pixels a half-block, or one character of an ASCII ramp where colours do not suffice.
 //!
 //! Pixels are shrunk by the mean of the area they cover and enlarged by whole factors, nearest neighbour.
 
@@ -129,9 +129,16 @@ impl Raster {
 
     /// One cell: its upper pixel, and its lower one unless the image ends between them.
     fn cell(&self, upper: f32, lower: Option<f32>, depth: Depth) -> (char, Style) {
-        if depth == Depth::Plain {
+        if !depth.has_shades() {
             let mean = lower.map_or(upper, |lower| f32::midpoint(upper, lower));
-            return (self.character(mean), Style::new());
+            // A sign that the character already shows; greys stay in the terminal's own foreground.
+            let end = if mean < 0.0 { BLUE } else { ORANGE };
+            let style = if self.signed {
+                depth.ink(end)
+            } else {
+                Style::new()
+            };
+            return (self.character(mean), style);
         }
         let color = |value: f32| depth.color(self.rgb(value));
         let below = lower.map_or(Color::Reset, color);
@@ -231,6 +238,9 @@ mod tests {
             [-1.0, -0.5, 0.0, 0.5, 1.0].map(shown),
             ['=', '-', ' ', '+', '#']
         );
+        let colored = |value: f32| signed.cell(value, None, Depth::Sixteen);
+        assert_eq!(colored(-1.0), ('=', Style::new().fg(Color::Blue)));
+        assert_eq!(colored(1.0), ('#', Style::new().fg(Color::Red)));
     }
 
     #[test]

@@ -74,17 +74,41 @@ fn codes(cell: &Cell) -> String {
         }
     }
     for (color, kind) in [(cell.fg, 38), (cell.bg, 48)] {
-        match color {
-            Color::Rgb(r, g, b) => codes.push(format!("{kind};2;{r};{g};{b}")),
-            Color::Indexed(index) => codes.push(format!("{kind};5;{index}")),
-            _ => {}
-        }
+        codes.extend(color_code(color, kind));
     }
     if codes.is_empty() {
         String::new()
     } else {
         format!("\x1b[{}m", codes.join(";"))
     }
+}
+
+/// The code of a colour as foreground (`kind` 38) or background (48); none for the terminal's own.
+fn color_code(color: Color, kind: u8) -> Option<String> {
+    // The first eight have codes of their own at 30 and 40, their bright versions at 90 and 100.
+    let named = |n: u8| (kind - 8 + n).to_string();
+    let bright = |n: u8| (kind + 52 + n).to_string();
+    Some(match color {
+        Color::Reset => return None,
+        Color::Black => named(0),
+        Color::Red => named(1),
+        Color::Green => named(2),
+        Color::Yellow => named(3),
+        Color::Blue => named(4),
+        Color::Magenta => named(5),
+        Color::Cyan => named(6),
+        Color::Gray => named(7),
+        Color::DarkGray => bright(0),
+        Color::LightRed => bright(1),
+        Color::LightGreen => bright(2),
+        Color::LightYellow => bright(3),
+        Color::LightBlue => bright(4),
+        Color::LightMagenta => bright(5),
+        Color::LightCyan => bright(6),
+        Color::White => bright(7),
+        Color::Indexed(index) => format!("{kind};5;{index}"),
+        Color::Rgb(r, g, b) => format!("{kind};2;{r};{g};{b}"),
+    })
 }
 
 #[cfg(test)]
@@ -105,5 +129,16 @@ mod tests {
             "a\x1b[0m\x1b[1;38;2;1;2;3mb\x1b[0m\nc\n"
         );
         assert_eq!(to_text(&buf, false), "ab\nc\n");
+    }
+
+    #[test]
+    fn every_colour_has_its_code() {
+        let codes = |color| [38, 48].map(|kind| color_code(color, kind).unwrap_or_default());
+        assert_eq!(codes(Color::Reset), ["", ""]);
+        assert_eq!(codes(Color::Red), ["31", "41"]);
+        assert_eq!(codes(Color::Gray), ["37", "47"]);
+        assert_eq!(codes(Color::DarkGray), ["90", "100"]);
+        assert_eq!(codes(Color::White), ["97", "107"]);
+        assert_eq!(codes(Color::Indexed(9)), ["38;5;9", "48;5;9"]);
     }
 }

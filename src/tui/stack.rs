@@ -12,7 +12,7 @@ use crate::session::snapshot::Snapshot;
 
 /// Draws one column. Shares of 1 in all fill the pane's height; NaN and none draw nothing.
 ///
-/// With colours the borders between experts are exact to an eighth of a cell, as long as no three meet in one;
+/// With enough colours the borders between experts are exact to an eighth of a cell, as long as no three meet in one;
 /// without, each cell shows the fill of the expert that holds most of it.
 pub fn stack(buf: &mut Buffer, pane: Rect, at: u16, shares: &[(Expert, f32)], depth: Depth) {
     let owner = |level: f32| {
@@ -31,7 +31,7 @@ pub fn stack(buf: &mut Buffer, pane: Rect, at: u16, shares: &[(Expert, f32)], de
         let eighths: [Option<Expert>; 8] =
             std::array::from_fn(|i| owner((floor + (i as f32 + 0.5) / 8.0) / height));
         let (lower, upper) = two_largest(eighths);
-        if depth == Depth::Plain {
+        if !depth.has_shades() {
             let count = |of: Option<Expert>| eighths.iter().filter(|&&owner| owner == of).count();
             let most = if count(upper) > count(lower) {
                 upper
@@ -39,7 +39,7 @@ pub fn stack(buf: &mut Buffer, pane: Rect, at: u16, shares: &[(Expert, f32)], de
                 lower
             };
             if let Some(expert) = most {
-                put(buf, pane, at, row, expert.fill(), Style::new());
+                put(buf, pane, at, row, expert.fill(), depth.ink(expert.rgb()));
             }
             continue;
         }
@@ -117,6 +117,10 @@ mod tests {
     fn fills_carry_the_same_without_colour() {
         let buf = drawn(&[(Expert::Vision, 0.5), (Expert::Prior, 0.5)], Depth::Plain);
         assert_eq!(buf, Buffer::with_lines(["░", "█"]));
+        let shares = [(Expert::Vision, 0.5), (Expert::Prior, 0.5)];
+        let buf = drawn(&shares, Depth::Sixteen);
+        assert_eq!((buf[(0, 0)].symbol(), buf[(0, 1)].symbol()), ("░", "█"));
+        assert_eq!(buf[(0, 1)].fg, Depth::Sixteen.color(Expert::Vision.rgb()));
     }
 
     #[test]

@@ -311,6 +311,26 @@ fn without_colour_no_cell_has_one() {
 }
 
 #[test]
+fn sixteen_colours_say_nothing_that_fills_do_not() {
+    let shown = [Depth::Plain, Depth::Sixteen].map(|depth| {
+        let face = Face {
+            depth,
+            ..Face::default()
+        };
+        screen(&fixture::snapshot(8, 16), &face, SMALL)
+    });
+    assert_eq!(to_text(&shown[0], false), to_text(&shown[1], false));
+    let is_named = |color: Color| !matches!(color, Color::Rgb(..) | Color::Indexed(_));
+    let cells = &shown[1].content;
+    assert!(
+        cells
+            .iter()
+            .all(|cell| is_named(cell.fg) && cell.bg == Color::Reset)
+    );
+    assert!(cells.iter().any(|cell| cell.fg == Color::Blue));
+}
+
+#[test]
 fn a_terminal_too_small_says_so() {
     let shown = screen(&fixture::snapshot(8, 16), &Face::default(), (39, 24));
     assert!(to_text(&shown, false).starts_with("poescope needs 40x12\n"));
@@ -443,11 +463,7 @@ fn nothing_panics_at_any_size() {
                 _ => Compare::Off,
             };
             face.help = (width % 5 == 0).then_some(usize::from(height % 3));
-            face.depth = if height % 2 == 0 {
-                Depth::Plain
-            } else {
-                Depth::Indexed
-            };
+            face.depth = [Depth::Plain, Depth::Indexed, Depth::Sixteen][usize::from(height % 3)];
             screen(snapshot, &face, (width, height));
         }
     }

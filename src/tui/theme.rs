@@ -1,8 +1,10 @@
-//! How colours reach the terminal: as given, by the nearest of 256, or not at all.
+//! How colours reach the terminal: as given, by the nearest of 256, as one of its own 16, or not at all.
 //!
 //! Nothing needs hue. Where a terminal has no colours to spare, letters and fills say the same.
 
 use ratatui::style::{Color, Modifier, Style};
+
+use crate::modality::Expert;
 
 /// An sRGB colour.
 pub type Rgb = (u8, u8, u8);
@@ -22,12 +24,16 @@ pub enum Depth {
     True,
     /// The 256 indexed colours: a cube of 216 and a ramp of greys.
     Indexed,
-    /// Sixteen or none: letters and fills only, images as characters.
+    /// The terminal's own sixteen, which every user sets otherwise: letters and fills carry the meaning, a colour
+    /// only repeats it, images are characters.
+    Sixteen,
+    /// None: letters and fills only, images as characters.
     Plain,
 }
 
 impl Depth {
-    /// What the environment says of the terminal, `NO_COLOR` above all.
+    /// What the environment says of the terminal, `NO_COLOR` above all. One that names no number of colours has the
+    /// sixteen that all have; only a `dumb` or unnamed one, or a monochrome one, has none.
     pub fn detect(variable: impl Fn(&str) -> Option<String>) -> Self {
         let set = |name: &str| variable(name).filter(|value| !value.is_empty());
         let term = set("TERM").unwrap_or_default();
@@ -40,7 +46,7 @@ impl Depth {
             "wezterm",
             "ghostty",
         ];
-        if set("NO_COLOR").is_some() {
+        if set("NO_COLOR").is_some() || term == "dumb" || term.ends_with("-m") {
             Self::Plain
         } else if set("COLORTERM").is_some_and(|value| value == "truecolor" || value == "24bit")
             || direct.iter().any(|name| term.contains(name))
@@ -48,9 +54,16 @@ impl Depth {
             Self::True
         } else if term.contains("256") {
             Self::Indexed
-        } else {
+        } else if term.is_empty() {
             Self::Plain
+        } else {
+            Self::Sixteen
         }
+    }
+
+    /// Whether there are enough colours for images and for fills to be told apart by colour alone.
+    pub fn has_shades(self) -> bool {
+        matches!(self, Self::True | Self::Indexed)
     }
 
     /// This terminal's version of a colour; the terminal's own foreground where there is none.
@@ -58,6 +71,7 @@ impl Depth {
         match self {
             Self::True => Color::Rgb(rgb.0, rgb.1, rgb.2),
             Self::Indexed => Color::Indexed(nearest_indexed(rgb)),
+            Self::Sixteen => ansi(rgb),
             Self::Plain => Color::Reset,
         }
     }
@@ -79,6 +93,37 @@ pub fn strong() -> Style {
 /// Labels, units and rules.
 pub fn dim() -> Style {
     Style::new().add_modifier(Modifier::DIM)
+}
+
+/// The palette in the names that sixteen-colour terminals have. Chosen by hand: by distance, vision and proprio would
+/// both be cyan. Greys are the terminal's own foreground, since its two greys may be its background.
+fn ansi(rgb: Rgb) -> Color {
+    let named = [
+        (Expert::Vision.rgb(), Color::Blue),
+        (Expert::Haptic.rgb(), Color::Red),
+        (Expert::Proprio.rgb(), Color::Green),
+        (Expert::Joint.rgb(), Color::Yellow),
+        (Expert::Concat.rgb(), Color::Magenta),
+        (PREDICTION, Color::Cyan),
+        (WARNING, Color::Red),
+    ];
+    if let Some(&(_, color)) = named.iter().find(|(known, _)| *known == rgb) {
+        return color;
+    }
+    let (r, g, b) = rgb;
+    let (low, high) = (r.min(g).min(b), r.max(g).max(b));
+    if high - low < 48 {
+        return Color::Reset;
+    }
+    let middle = low.midpoint(high);
+    match (r > middle, g > middle, b > middle) {
+        (true, true, _) => Color::Yellow,
+        (true, false, false) => Color::Red,
+        (true, false, true) => Color::Magenta,
+        (false, true, false) => Color::Green,
+        (false, true, true) => Color::Cyan,
+        (false, false, _) => Color::Blue,
+    }
 }
 
 /// The nearest of the 6×6×6 cube and the 24 greys of the 256-colour palette.
@@ -120,7 +165,17 @@ mod tests {
     fn no_color_wins_over_what_the_terminal_can() {
         assert_eq!(detect(&[("COLORTERM", "truecolor")]), Depth::True);
         assert_eq!(detect(&[("TERM", "xterm-256color")]), Depth::Indexed);
-        assert_eq!(detect(&[("TERM", "linux")]), Depth::Plain);
+        for sixteen in ["linux", "xterm", "screen", "vt220"] {
+            assert_eq!(detect(&[("TERM", sixteen)]), Depth::Sixteen, "{sixteen}");
+        }
+        for plain in ["dumb", "xterm-m"] {
+            assert_eq!(detect(&[("TERM", plain)]), Depth::Plain, "{plain}");
+        }
+        assert_eq!(detect(&[]), Depth::Plain);
+        assert_eq!(
+            detect(&[("TERM", "linux"), ("NO_COLOR", "1")]),
+            Depth::Plain
+        );
         assert_eq!(
             detect(&[("COLORTERM", "truecolor"), ("NO_COLOR", "1")]),
             Depth::Plain
@@ -129,6 +184,33 @@ mod tests {
             detect(&[("COLORTERM", "truecolor"), ("NO_COLOR", "")]),
             Depth::True
         );
+    }
+
+    #[test]
+    fn sixteen_colours_tell_the_experts_of_one_model_apart() {
+        let of = |experts: &[Expert]| -> Vec<Color> {
+            let colors = experts
+                .iter()
+                .map(|expert| Depth::Sixteen.color(expert.rgb()));
+            colors.collect()
+        };
+        for model in [
+            &[
+                Expert::Vision,
+                Expert::Haptic,
+                Expert::Proprio,
+                Expert::Prior,
+            ][..],
+            &[Expert::Vision, Expert::Joint, Expert::Prior],
+        ] {
+            let colors = of(model);
+            for (i, color) in colors.iter().enumerate() {
+                assert!(!colors[..i].contains(color), "{model:?}: {colors:?}");
+            }
+        }
+        assert_eq!(Depth::Sixteen.color((200, 200, 210)), Color::Reset);
+        assert_eq!(Depth::Sixteen.color((33, 102, 172)), Color::Blue);
+        assert_eq!(Depth::Sixteen.color((230, 97, 1)), Color::Red);
     }
 
     #[test]

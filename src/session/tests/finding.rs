@@ -88,7 +88,7 @@ fn scores_are_kept_by_model_and_data() {
         let model = FakePredictor::three().with_hash(hash);
         let calls = model.calls();
         let mut session = session_of(vec![Arc::new(model)]);
-        session.survey(Some(Arc::clone(&shelf) as Arc<dyn Cache>));
+        session.keep_scores_in(Arc::clone(&shelf) as Arc<dyn Cache>);
         let snapshot = run(&mut session, [Failure(1)]);
         (snapshot.table.queue.clone(), calls.encoded())
     };

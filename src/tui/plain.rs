@@ -1,0 +1,259 @@
+//! A snapshot as lines of text for scripts and screen readers: one labelled fact a line, always in the same order,
+//! ASCII labels and units spelled out. What is not known is `none`; a label is left out only with its whole subject.
+
+use std::fmt::{Display, Write};
+
+use crate::session::command::Scope;
+use crate::session::snapshot::{
+    Badge, Estimate, ExpertView, LatentView, PositionView, Snapshot, StepPsnr,
+};
+
+/// Writes the report.
+pub fn plain(snapshot: &Snapshot) -> String {
+    let mut report = Report::default();
+    opened(&mut report, snapshot);
+    time(&mut report, snapshot);
+    for expert in &snapshot.experts {
+        of_expert(&mut report, expert);
+    }
+    latent(&mut report, "belief", snapshot.belief.as_ref());
+    position(&mut report, snapshot.position.as_ref(), snapshot.cursor);
+    frames(&mut report, snapshot);
+    told(&mut report, snapshot);
+    report.0
+}
+
+/// Lines of `label: fact`.
+#[derive(Default)]
+struct Report(String);
+
+impl Report {
+    /// One line, whatever the fact has in it: what comes from files may hold line breaks or escape sequences.
+    fn fact(&mut self, label: &str, fact: impl Display) {
+        let fact = fact.to_string().replace(char::is_control, " ");
+        // Writing to a string cannot fail.
+        let _ = writeln!(self.0, "{label}: {}", fact.trim());
+    }
+
+    /// A number with its unit.
+    fn number(&mut self, label: &str, value: Option<f32>, unit: &str) {
+        match value.filter(|value| value.is_finite()) {
+            Some(value) => self.fact(label, format!("{value:.3} {unit}")),
+            None => self.fact(label, "none"),
+        }
+    }
+
+    /// Numbers with blanks between them.
+    fn numbers(&mut self, label: &str, values: &[f32]) {
+        let text: Vec<String> = values
+            .iter()
+            .map(|value| {
+                if value.is_finite() {
+                    format!("{value:.3}")
+                } else {
+                    "none".to_owned()
+                }
+            })
+            .collect();
+        if text.is_empty() {
+            self.fact(label, "none");
+        } else {
+            self.fact(label, text.join(" "));
+        }
+    }
+}
+
+fn opened(report: &mut Report, snapshot: &Snapshot) {
+    report.fact("dataset", &snapshot.dataset);
+    match snapshot.models.get(snapshot.model) {
+        Some(model) => {
+            report.fact("model", &model.name);
+            report.fact(
+                "model number",
+                of(snapshot.model + 1, snapshot.models.len()),
+            );
+            report.fact("model source", &model.source);
+            match model.update {
+                Some(update) => report.fact("model update", update),
+                None => report.fact("model update", "none"),
+            }
+        }
+        None => report.fact("model", "none"),
+    }
+    match &snapshot.episode {
+        Some(episode) => {
+            report.fact("episode", &episode.id);
+            report.fact(
+                "episode number",
+                of(snapshot.episode_index + 1, snapshot.episode_count),
+            );
+            report.fact(
+                "episode split",
+                episode.split.map_or("none", |it| it.name()),
+            );
+            for flag in &episode.flags {
+                report.fact("recording", flag);
+            }
+            for missing in &episode.missing {
+                report.fact("recording lacks", missing);
+            }
+        }
+        None => report.fact("episode", "none"),
+    }
+}
+
+fn time(report: &mut Report, snapshot: &Snapshot) {
+    let cursor = snapshot.cursor;
+    let episode = snapshot.episode.as_deref();
+    let steps = episode.map_or(0, |episode| episode.secs.len());
+    report.fact("step", of(cursor + 1, steps));
+    let secs = episode.and_then(|episode| episode.secs.get(cursor));
+    report.number("time", secs.map(|&secs| secs as f32), "s");
+    let force = episode.and_then(|episode| episode.force_newtons.get(cursor));
+    report.number("force", force.copied(), "N");
+    report.fact("context", format!("{} images", snapshot.context));
+    report.fact("horizon", format!("{} images", snapshot.horizon));
+    report.fact("prediction from step", snapshot.start + 2);
+    let scope = match snapshot.scope {
+        Scope::Episode => "episode",
+        Scope::Onward => "onward",
+        Scope::Frame => "frame",
+    };
+    report.fact("scope", scope);
+}
+
+fn of_expert(report: &mut Report, view: &ExpertView) {
+    let name = format!("expert {}", view.expert.name());
+    let label = |what: &str| format!("{name} {what}");
+    report.number(&label("alpha"), Some(view.alpha), "");
+    latent(report, &name, view.latent.as_ref());
+    report.numbers(&label("share per dimension"), &view.share);
+    report.number(&label("share"), percent(Some(view.share_mean)), "percent");
+    report.number(
+        &label("share of position"),
+        percent(view.share_position),
+        "percent",
+    );
+}
+
+fn latent(report: &mut Report, name: &str, latent: Option<&LatentView>) {
+    let parts = latent.map_or((&[][..], &[][..]), |it| (&it.mean, &it.sigma));
+    report.numbers(&format!("{name} mean"), parts.0);
+    report.numbers(&format!("{name} sigma"), parts.1);
+}
+
+fn position(report: &mut Report, position: Option<&PositionView>, cursor: usize) {
+    let Some(position) = position else {
+        report.fact("position", "none");
+        return;
+    };
+    let centimetres = |[x, y]: [f32; 2]| [x * 100.0, y * 100.0];
+    let place = |report: &mut Report, label: &str, metres: Option<[f32; 2]>| {
+        let place = metres.map(centimetres);
+        report.numbers(
+            &format!("{label}, x y in cm"),
+            place.as_ref().map_or(&[][..], |place| place),
+        );
+    };
+    let truth = position.truth.get(cursor).map(|pose| [pose.x, pose.y]);
+    place(report, "position truth", truth);
+    place(report, "position tip", position.tip.get(cursor).copied());
+    for (name, estimates, error) in [
+        ("belief", &position.belief, position.belief_error_m),
+        (
+            "prediction",
+            &position.prediction,
+            position.prediction_error_m,
+        ),
+    ] {
+        let estimate: Option<Estimate> = estimates.get(cursor).copied().flatten();
+        let label = format!("position {name}");
+        place(report, &label, estimate.map(|it| [it.x, it.y]));
+        let sigma = estimate.map(|it| [it.covariance[0].sqrt(), it.covariance[2].sqrt()]);
+        place(report, &format!("{label} sigma"), sigma);
+        let error = error.map(|metres| metres * 100.0);
+        report.number(&format!("{label} error"), error, "cm");
+    }
+}
+
+fn frames(report: &mut Report, snapshot: &Snapshot) {
+    let psnr: StepPsnr = snapshot
+        .psnr_db
+        .get(snapshot.cursor)
+        .copied()
+        .unwrap_or_default();
+    report.number("belief PSNR", psnr.belief, "dB");
+    report.number("prediction PSNR", psnr.prediction, "dB");
+}
+
+fn told(report: &mut Report, snapshot: &Snapshot) {
+    match &snapshot.badge {
+        Badge::Trained => report.fact("switches", "trained"),
+        Badge::Untrained(why) => report.fact("switches", format!("untrained, {why}")),
+        Badge::NoProduct => report.fact("switches", "none, the model has no product"),
+    }
+    if snapshot.busy {
+        report.fact("busy", "still computing");
+    }
+    match &snapshot.message {
+        Some(message) if message.error => report.fact("error", &message.text),
+        Some(message) => report.fact("message", &message.text),
+        None => report.fact("message", "none"),
+    }
+    report.fact("state", &snapshot.state);
+}
+
+fn of(number: usize, count: usize) -> String {
+    format!("{number} of {count}")
+}
+
+fn percent(share: Option<f32>) -> Option<f32> {
+    share.map(|share| share * 100.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::snapshot::Message;
+    use crate::tui::fixture;
+
+    #[test]
+    fn a_fact_a_line_in_a_fixed_order() {
+        insta::assert_snapshot!(plain(&fixture::snapshot(8, 16)));
+    }
+
+    #[test]
+    fn what_is_not_known_is_none_and_never_a_special_number() {
+        let mut snapshot = fixture::snapshot(0, 16);
+        snapshot.position = None;
+        snapshot.experts[0].share_mean = f32::NAN;
+        let text = plain(&snapshot);
+        for line in [
+            "position: none",
+            "belief mean: none",
+            "belief PSNR: none",
+            "expert vision share: none",
+        ] {
+            assert!(text.lines().any(|it| it == line), "{line} in {text}");
+        }
+        assert!(!text.contains("NaN") && !text.contains("inf"));
+    }
+
+    #[test]
+    fn text_from_files_stays_on_its_line() {
+        let mut snapshot = fixture::snapshot(8, 16);
+        snapshot.dataset = "a\nstate: \x1b[2Jb".to_owned();
+        snapshot.message = Some(Message {
+            error: true,
+            text: "no such step".to_owned(),
+        });
+        let text = plain(&snapshot);
+        assert!(text.starts_with("dataset: a state:  [2Jb\nmodel: v-h-p\n"));
+        assert!(text.contains("\nerror: no such step\n"));
+        let labelled = |line: &str| {
+            line.split_once(": ")
+                .is_some_and(|(_, fact)| !fact.is_empty())
+        };
+        assert!(text.lines().all(labelled), "{text}");
+    }
+}
