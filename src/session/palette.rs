@@ -109,6 +109,3 @@ fn all(snapshot: &Snapshot) -> Vec<Entry> {
     }
     entries
 }
-
-#[cfg(test)]
-mod tests;

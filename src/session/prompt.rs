@@ -66,6 +66,3 @@ fn split(line: &str) -> (&str, &str) {
     line.split_once(char::is_whitespace)
         .map_or((line, ""), |(word, rest)| (word, rest.trim()))
 }
-
-#[cfg(test)]
-mod tests;

@@ -10,8 +10,8 @@ use super::switches::Switches;
 use crate::measure::corruption::Corruption;
 use crate::modality::Modality;
 
-/// So many samples at least, for a covariance, and at most, for a wait that nobody notices.
-pub const SAMPLES: RangeInclusive<usize> = 2..=1024;
+/// So many samples at least, for a covariance, and at most: more tell nothing new and take their time.
+pub const SAMPLES: RangeInclusive<usize> = 2..=256;
 /// From a stop to the fastest edited controls.
 pub const SCALES: RangeInclusive<f32> = 0.0..=4.0;
 /// How many changes can be taken back.

@@ -36,7 +36,14 @@ fn what_is_not_mentioned_is_as_at_the_start_but_marks_and_the_second_model_stay(
     let state = bench(&session);
     run(&mut session, [Restore(state)]);
     let back = run(&mut session, [Restore("v=1;step=2".to_owned())]);
-    for gone in ["corrupt", "controls", "sample", "seed", "select", "rank"] {
+    for gone in [
+        "corrupt=",
+        "controls=",
+        "sample",
+        "seed=",
+        "select=",
+        "rank=",
+    ] {
         assert!(!back.state.contains(gone), "{gone} in {}", back.state);
     }
     assert!(back.state.contains(";marks=3,7") && back.state.contains(";compare="));

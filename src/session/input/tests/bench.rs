@@ -255,7 +255,7 @@ fn samples_double_and_halve_within_bounds() {
         "128 samples | - half, = twice as many, Esc ends"
     );
     played("M==========", &mut at);
-    assert_eq!(at.sampling.count, 1024);
+    assert_eq!(at.sampling.count, 256);
     played("M----------------", &mut at);
     assert_eq!(at.sampling.count, 2);
 }
