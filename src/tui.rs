@@ -49,9 +49,9 @@ mod timeline;
 mod words;
 
 #[cfg(test)]
-mod fixture;
-#[cfg(test)]
 mod dump;
+#[cfg(test)]
+mod fixture;
 #[cfg(test)]
 mod tests;
 

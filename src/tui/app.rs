@@ -3,6 +3,7 @@
 use ratatui::layout::{Position, Rect, Size};
 
 use super::axis::Axis;
+use super::episodes::list::{Asked, List};
 use super::experts::expert_at;
 use super::face::Face;
 use super::help;
@@ -71,6 +72,9 @@ impl App {
     /// Takes one key.
     pub fn press(&mut self, key: &Key) -> Flow {
         let snapshot = self.session.snapshot();
+        if self.face.help.is_none() && self.list_takes(key, &snapshot) {
+            return Flow::Go;
+        }
         let flow = match self.input.press(key, &snapshot) {
             Some(Action::Session(command)) => {
                 self.session.apply(command);
@@ -86,6 +90,30 @@ impl App {
         self.face.expert = self.input.focused_expert();
         self.face.prompt = self.input.hint(&self.session.snapshot());
         flow
+    }
+
+    /// Opens the list of episodes, or closes it.
+    pub fn toggle_episodes(&mut self) {
+        let open = List::open(&self.session.snapshot());
+        self.face.episodes = self.face.episodes.is_none().then_some(open);
+    }
+
+    /// Whether the open list has taken the key.
+    fn list_takes(&mut self, key: &Key, snapshot: &Snapshot) -> bool {
+        let Some(list) = &mut self.face.episodes else {
+            return false;
+        };
+        match list.press(key, snapshot) {
+            Asked::Usual => return false,
+            Asked::Nothing => {}
+            Asked::Command(command) => self.session.apply(command),
+            Asked::Close => self.face.episodes = None,
+            Asked::Open(index) => {
+                self.face.episodes = None;
+                self.session.apply(Command::SelectEpisode(index));
+            }
+        }
+        true
     }
 
     fn face_command(&mut self, command: FaceCommand, snapshot: &Snapshot) -> Flow {
@@ -118,7 +146,7 @@ impl App {
 
     /// Takes what the mouse did at a cell of the screen.
     pub fn point(&mut self, pointer: Pointer, at: Position) {
-        if self.face.help.is_some() {
+        if self.face.help.is_some() || self.face.episodes.is_some() {
             return;
         }
         let snapshot = self.session.snapshot();

@@ -96,7 +96,11 @@ impl Canvas {
     /// Whether nothing has been drawn in a cell.
     pub fn is_empty(&self, column: u16, row: u16) -> bool {
         let (column, row) = (usize::from(column), usize::from(row));
-        column < self.columns && self.cells.get(row * self.columns + column).is_some_and(|cell| cell.0 == 0)
+        column < self.columns
+            && self
+                .cells
+                .get(row * self.columns + column)
+                .is_some_and(|cell| cell.0 == 0)
     }
 
     /// Writes the dots into the pane's upper left corner.

@@ -17,7 +17,9 @@ use crate::session::snapshot::board::BoardView;
 /// The board where there is something to read, else why there is nothing.
 fn board(snapshot: &Snapshot) -> Result<&BoardView, String> {
     match snapshot.board.as_deref() {
-        Some(BoardView { why_not: Some(why), .. }) => Err(why.clone()),
+        Some(BoardView {
+            why_not: Some(why), ..
+        }) => Err(why.clone()),
         Some(board) => Ok(board),
         None if snapshot.busy => Err("computing…".to_owned()),
         None => Err("not measured yet".to_owned()),

@@ -42,8 +42,8 @@ struct Places {
 impl Places {
     fn of(columns: u16) -> Self {
         let spare = columns.saturating_sub(REST + ID + SPARK);
-        let id = ID + (spare / 2).min(20);
-        let spark_columns = SPARK + (spare - (id - ID)).min(32);
+        let id = ID + (spare / 3).min(20);
+        let spark_columns = SPARK + (spare - (id - ID)).min(39);
         // Mark and number, name, split, steps.
         let spark = 7 + id + 6 + 6 + 2;
         let mut at = spark + spark_columns;
@@ -97,13 +97,25 @@ pub fn draw(buf: &mut Buffer, screen: Rect, snapshot: &Snapshot, face: &Face, li
         let style = if sorted { strong() } else { dim() };
         right(buf, pane, end, 1, name, style);
         if sorted {
-            text(buf, pane, end, 1, if table.descending { "▼" } else { "▲" }, strong());
+            text(
+                buf,
+                pane,
+                end,
+                1,
+                if table.descending { "▼" } else { "▲" },
+                strong(),
+            );
         }
     }
     let rows = pane.height.saturating_sub(3);
     let selected = list.place(table);
     let first = first_row(selected, table.shown.len(), usize::from(rows));
-    let shown = table.shown.iter().enumerate().skip(first).take(usize::from(rows));
+    let shown = table
+        .shown
+        .iter()
+        .enumerate()
+        .skip(first)
+        .take(usize::from(rows));
     for (i, (place, &index)) in shown.enumerate() {
         let line = Rect {
             y: pane.y + 2 + i as u16,
@@ -118,7 +130,10 @@ pub fn draw(buf: &mut Buffer, screen: Rect, snapshot: &Snapshot, face: &Face, li
         }
         if place == selected {
             // Dim and coloured cells would make patches of a reversed line.
-            buf.set_style(line.intersection(buf.area), Style::reset().add_modifier(Modifier::REVERSED));
+            buf.set_style(
+                line.intersection(buf.area),
+                Style::reset().add_modifier(Modifier::REVERSED),
+            );
         }
     }
     if table.shown.is_empty() {
@@ -143,7 +158,14 @@ fn head(buf: &mut Buffer, pane: Rect, table: &TableView, list: &List) {
     let count = format!("{} of {}", table.shown.len(), table.rows.len());
     let at = text(buf, pane, at + 2, 0, &count, dim());
     if list.is_typing {
-        let at = text(buf, pane, at + 2, 0, &format!("/{}", table.filter), strong());
+        let at = text(
+            buf,
+            pane,
+            at + 2,
+            0,
+            &format!("/{}", table.filter),
+            strong(),
+        );
         text(buf, pane, at, 0, "▏", Style::new());
     } else if !table.filter.is_empty() {
         let filter = format!("/{}", table.filter);
@@ -173,7 +195,13 @@ fn foot(buf: &mut Buffer, pane: Rect, table: &TableView) {
     }
 }
 
-fn episode(buf: &mut Buffer, line: Rect, (index, row): (usize, &EpisodeRow), places: &Places, face: &Face) {
+fn episode(
+    buf: &mut Buffer,
+    line: Rect,
+    (index, row): (usize, &EpisodeRow),
+    places: &Places,
+    face: &Face,
+) {
     right(buf, line, 5, 0, &(index + 1).to_string(), dim());
     let name = Rect {
         width: line.width.min(7 + places.id),
@@ -185,7 +213,14 @@ fn episode(buf: &mut Buffer, line: Rect, (index, row): (usize, &EpisodeRow), pla
     let Some(score) = &row.score else {
         return;
     };
-    right(buf, line, places.spark - 2, 0, &score.steps.to_string(), Style::new());
+    right(
+        buf,
+        line,
+        places.spark - 2,
+        0,
+        &score.steps.to_string(),
+        Style::new(),
+    );
     if let Some(fault) = &score.fault {
         text(buf, line, places.spark, 0, fault, face.depth.ink(WARNING));
         return;
@@ -217,18 +252,36 @@ fn values(scores: &Scores) -> [String; 6] {
         one(scores.gain),
         one(scores.nees),
         one(scores.conflict),
-        scores.escape.map_or_else(|| "–".to_owned(), |step| (step + 1).to_string()),
+        scores
+            .escape
+            .map_or_else(|| "–".to_owned(), |step| (step + 1).to_string()),
     ]
 }
 
 /// The frames' error over the steps, from nothing to the episode's own worst.
 fn spark(buf: &mut Buffer, line: Rect, score: &EpisodeScore, places: &Places) {
-    let errors: Vec<f32> = score.by_step.iter().map(|at| at.error.unwrap_or(f32::NAN)).collect();
-    let most = errors.iter().copied().filter(|error| error.is_finite()).fold(1e-6, f32::max);
+    let errors: Vec<f32> = score
+        .by_step
+        .iter()
+        .map(|at| at.error.unwrap_or(f32::NAN))
+        .collect();
+    let most = errors
+        .iter()
+        .copied()
+        .filter(|error| error.is_finite())
+        .fold(1e-6, f32::max);
     let columns = usize::from(places.spark_columns - 1);
-    let shown = columns.min(errors.len());
+    if errors.is_empty() {
+        return;
+    }
+    // A whole number of columns a step, or of some columns the worst of their steps.
+    let shown = match columns / errors.len() {
+        0 => columns,
+        each => each * errors.len(),
+    };
     for column in 0..shown {
-        let steps = column * errors.len() / shown..(column + 1) * errors.len() / shown;
+        let first = column * errors.len() / shown;
+        let steps = first..((column + 1) * errors.len() / shown).max(first + 1);
         let worst = errors[steps].iter().copied().fold(f32::NAN, f32::max);
         if worst.is_finite() {
             // Never a full cell, or the lines of the list would run into one another.
@@ -241,7 +294,10 @@ fn spark(buf: &mut Buffer, line: Rect, score: &EpisodeScore, places: &Places) {
 impl List {
     /// The column after or before the one that is sorted by; it stops at the ends.
     pub fn neighbour(sort: Column, by: isize) -> Column {
-        let at = COLUMNS.iter().position(|&column| column == sort).unwrap_or(0);
+        let at = COLUMNS
+            .iter()
+            .position(|&column| column == sort)
+            .unwrap_or(0);
         COLUMNS[at.saturating_add_signed(by).min(COLUMNS.len() - 1)]
     }
 }

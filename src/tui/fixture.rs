@@ -138,7 +138,7 @@ fn position(cursor: usize, steps: usize) -> PositionView {
 }
 
 /// A second model at the same moment, a little worse at everything.
-pub fn other(cursor: usize, steps: usize) -> Option<Arc<OtherView>> {
+pub fn other(cursor: usize, steps: usize) -> Arc<OtherView> {
     let own = snapshot(cursor, steps);
     let worse = |path: &[Option<Estimate>]| {
         let moved = |estimate: &Option<Estimate>| {
@@ -159,7 +159,7 @@ pub fn other(cursor: usize, steps: usize) -> Option<Arc<OtherView>> {
         prediction: worse(&position.prediction),
         ..position
     });
-    Some(Arc::new(OtherView {
+    Arc::new(OtherView {
         model: 0,
         frames: own.frames,
         difference: None,
@@ -167,7 +167,7 @@ pub fn other(cursor: usize, steps: usize) -> Option<Arc<OtherView>> {
         position,
         psnr_db: Arc::new(psnr.collect()),
         fault: None,
-    }))
+    })
 }
 
 /// The session at a step of an episode of so many.

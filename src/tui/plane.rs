@@ -29,17 +29,27 @@ impl Extent {
     pub fn of(position: &PositionView) -> Option<Self> {
         let truth = position.truth.iter().map(|pose| (pose.x, pose.y));
         let tip = position.tip.iter().map(|&[x, y]| (x, y));
-        let estimates = [&position.belief, &position.prediction, &position.recorded_controls];
+        let estimates = [
+            &position.belief,
+            &position.prediction,
+            &position.recorded_controls,
+        ];
         let estimates = estimates.into_iter().flat_map(|path| path.iter().flatten());
         let mut extent = Self::of_points(
-            truth.chain(tip).chain(estimates.map(|estimate| (estimate.x, estimate.y))),
+            truth
+                .chain(tip)
+                .chain(estimates.map(|estimate| (estimate.x, estimate.y))),
         )?;
         let paths = extent;
         let size = |low: f32, high: f32| high - low;
         let limit = size(paths.low.0, paths.high.0)
             .max(size(paths.low.1, paths.high.1))
             .max(2.0);
-        let believed = position.belief.iter().flatten().map(|e| (e, SIGMAS_OF_95_PERCENT));
+        let believed = position
+            .belief
+            .iter()
+            .flatten()
+            .map(|e| (e, SIGMAS_OF_95_PERCENT));
         let predicted = position.prediction.iter().flatten().map(|e| (e, 1.0));
         for (estimate, sigmas) in believed.chain(predicted) {
             let [xx, _, yy] = estimate.covariance;
@@ -157,7 +167,14 @@ impl Plane {
         for (y, _) in whole(Scale::linear(bottom, self.top), rows / 3) {
             let row = ((self.top - y) / self.cm_per_dot / 4.0) as u16;
             if row < rows {
-                right(buf, pane, GUTTER - 1, row, &(y.round() as i32).to_string(), dim());
+                right(
+                    buf,
+                    pane,
+                    GUTTER - 1,
+                    row,
+                    &(y.round() as i32).to_string(),
+                    dim(),
+                );
             }
         }
         let end = self.left + across * self.cm_per_dot;
@@ -181,15 +198,17 @@ mod tests {
     use crate::tui::fixture;
 
     fn position() -> PositionView {
-        fixture::snapshot(8, 16).position.unwrap_or_else(|| PositionView {
-            truth: Arc::default(),
-            tip: Arc::default(),
-            belief: Arc::default(),
-            prediction: Arc::default(),
-            recorded_controls: Arc::default(),
-            belief_error_m: None,
-            prediction_error_m: None,
-        })
+        fixture::snapshot(8, 16)
+            .position
+            .unwrap_or_else(|| PositionView {
+                truth: Arc::default(),
+                tip: Arc::default(),
+                belief: Arc::default(),
+                prediction: Arc::default(),
+                recorded_controls: Arc::default(),
+                belief_error_m: None,
+                prediction_error_m: None,
+            })
     }
 
     #[test]
@@ -210,12 +229,19 @@ mod tests {
         let pane = Rect::new(0, 0, 40, 20);
         let extent = |position: &PositionView| Extent::of(position).map(|e| Plane::new(e, pane));
         let plane = extent(&wide);
-        assert!(plane.is_some_and(|plane| wide.belief.iter().flatten().all(|estimate| {
-            !plane.cuts(&plane.ellipse(estimate, SIGMAS_OF_95_PERCENT))
-        })));
+        assert!(plane.is_some_and(|plane| {
+            wide.belief
+                .iter()
+                .flatten()
+                .all(|estimate| !plane.cuts(&plane.ellipse(estimate, SIGMAS_OF_95_PERCENT)))
+        }));
         // σ of 10 m: the paths still take a third.
         wide.belief = widened(100.0);
-        let scales = [extent(&narrow), extent(&wide)].map(|plane| plane.map_or(0.0, |p| p.cm_per_dot));
-        assert!(scales[1] > scales[0] && scales[1] < 4.0 * scales[0], "{scales:?}");
+        let scales =
+            [extent(&narrow), extent(&wide)].map(|plane| plane.map_or(0.0, |p| p.cm_per_dot));
+        assert!(
+            scales[1] > scales[0] && scales[1] < 4.0 * scales[0],
+            "{scales:?}"
+        );
     }
 }

@@ -125,7 +125,9 @@ impl Plot {
             let centre = (self.dot((*value, self.y.low)).0.max(0.0) / 2.0) as u16 + self.gutter;
             let length = width(label);
             let latest = self.pane.width.saturating_sub(length);
-            let at = centre.saturating_sub(length / 2).clamp(self.gutter.min(latest), latest);
+            let at = centre
+                .saturating_sub(length / 2)
+                .clamp(self.gutter.min(latest), latest);
             if at >= free {
                 free = text(buf, self.pane, at, rows, label, dim()) + 1;
             }
@@ -146,12 +148,21 @@ mod tests {
         let mut buf = Buffer::empty(Rect::new(0, 0, 12, 4));
         let (x, y) = (Scale::linear(1.0, 3.0), Scale::linear(0.0, 10.0));
         if let Some(mut plot) = Plot::new(buf.area, x, y) {
-            plot.line(&[(1.0, 0.0), (2.0, 0.0), (f32::NAN, 0.0), (3.0, 10.0)], Stroke::Solid, Style::new());
+            plot.line(
+                &[(1.0, 0.0), (2.0, 0.0), (f32::NAN, 0.0), (3.0, 10.0)],
+                Stroke::Solid,
+                Style::new(),
+            );
             plot.mark((3.0, 10.0), '◆', Style::new());
             plot.mark((9.0, 10.0), '×', Style::new());
             plot.draw(&mut buf, &[(1.0, "+1".to_owned()), (3.0, "+3".to_owned())]);
         }
-        let expected = ["10│        ◆", "  │         ", " 0│⣀⣀⣀⣀⡀    ", "  └+1     +3"];
+        let expected = [
+            "10│        ◆",
+            "  │         ",
+            " 0│⣀⣀⣀⣀⣀    ",
+            "  └+1     +3",
+        ];
         assert_eq!(
             super::super::print::to_text(&buf, false),
             super::super::print::to_text(&Buffer::with_lines(expected), false)

@@ -112,7 +112,9 @@ fn off(position: &PositionView) -> String {
 /// The dots of the estimates that there are.
 fn dots(view: &Plane, estimates: &[Option<Estimate>]) -> Vec<(f32, f32)> {
     let points = estimates.iter().flatten();
-    points.map(|estimate| view.dot([estimate.x, estimate.y])).collect()
+    points
+        .map(|estimate| view.dot([estimate.x, estimate.y]))
+        .collect()
 }
 
 fn at_step(estimates: &[Option<Estimate>], step: usize) -> Option<Estimate> {
@@ -129,7 +131,13 @@ fn paths(canvas: &mut Canvas, view: &Plane, position: &PositionView, face: &Face
 }
 
 /// Those at the cursor.
-fn ellipses(canvas: &mut Canvas, view: &Plane, position: &PositionView, cursor: usize, face: &Face) {
+fn ellipses(
+    canvas: &mut Canvas,
+    view: &Plane,
+    position: &PositionView,
+    cursor: usize,
+    face: &Face,
+) {
     // A prediction states the spread of its last step only, which no mass can be claimed for.
     if let Some(estimate) = at_step(&position.prediction, cursor) {
         let ink = face.depth.ink(PREDICTION);
@@ -169,4 +177,17 @@ fn marks(
     if let Some(estimate) = at_step(&position.belief, cursor) {
         mark([estimate.x, estimate.y], '●', strong());
     }
+}
+
+/// The cells of truth, prediction and belief at the cursor.
+fn marked(view: &Plane, position: &PositionView, cursor: usize) -> Vec<(u16, u16)> {
+    let truth = position.truth.get(cursor).map(|pose| [pose.x, pose.y]);
+    let estimates = [&position.prediction, &position.belief].map(|path| {
+        let now = at_step(path, cursor)?;
+        Some([now.x, now.y])
+    });
+    let points = [truth].into_iter().chain(estimates).flatten();
+    points
+        .filter_map(|point| view.cell(view.dot(point)))
+        .collect()
 }

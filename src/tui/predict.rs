@@ -21,7 +21,9 @@ fn ahead(snapshot: &Snapshot) -> impl Iterator<Item = (usize, usize)> {
         .as_ref()
         .map_or(0, |episode| episode.secs.len());
     let (start, horizon) = (snapshot.start, snapshot.horizon);
-    (0..=horizon).map(move |h| (h, start + h)).filter(move |&(_, step)| step < steps)
+    (0..=horizon)
+        .map(move |h| (h, start + h))
+        .filter(move |&(_, step)| step < steps)
 }
 
 /// The cursor's distance from the start, while it is within the horizon.
@@ -39,5 +41,8 @@ fn labels(last: usize) -> Vec<(f32, String)> {
         _ => 10,
     };
     let step = |h: usize| (h as f32, format!("+{h}"));
-    (1..=last).filter(|&h| h == 1 || h.is_multiple_of(every)).map(step).collect()
+    (1..=last)
+        .filter(|&h| h == 1 || h.is_multiple_of(every))
+        .map(step)
+        .collect()
 }

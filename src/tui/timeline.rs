@@ -212,7 +212,9 @@ fn track(buf: &mut Buffer, pane: Rect, row: u16, axis: Axis, snapshot: &Snapshot
     };
     // What the cursor covers is said beside the track.
     let start = right(buf, pane, pane.width, row, &seen, dim());
-    let here: String = events::symbols(snapshot, snapshot.cursor).into_iter().collect();
+    let here: String = events::symbols(snapshot, snapshot.cursor)
+        .into_iter()
+        .collect();
     right(buf, pane, start.saturating_sub(1), row, &here, strong());
 }
 

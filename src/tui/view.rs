@@ -111,8 +111,9 @@ impl View {
     /// The panes that Tab goes through; the first has the focus when the view opens.
     pub fn panes(self) -> &'static [Pane] {
         use Pane::{
-            Coverage, Dependence, Dims, Divergence, Experts, Frames, Horizons, Numbers, Quality, Strip, Verdict,
-            Latents, Pairs, Position, Pulls, Samples, Series, Sets, Spread, Timeline,
+            Coverage, Dependence, Dims, Divergence, Experts, Frames, Horizons, Latents, Numbers,
+            Pairs, Position, Pulls, Quality, Samples, Series, Sets, Spread, Strip, Timeline,
+            Verdict,
         };
         match self {
             Self::Overview => &[Frames, Experts, Latents, Position, Timeline],

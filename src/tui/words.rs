@@ -93,7 +93,10 @@ mod tests {
 
     #[test]
     fn words_are_never_cut_and_lines_never_too_long() {
-        assert_eq!(wrap("claims 95 %, holds 71 %", 12), ["claims 95 %,", "holds 71 %"]);
+        assert_eq!(
+            wrap("claims 95 %, holds 71 %", 12),
+            ["claims 95 %,", "holds 71 %"]
+        );
         assert_eq!(wrap("  ", 5), Vec::<String>::new());
         assert_eq!(wrap("overconfident at", 4), ["overconfident", "at"]);
     }

@@ -57,18 +57,32 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     plot.line(&[(0.0, 0.0), (100.0, 100.0)], Stroke::Sparse, dim());
     let drawn = [
         (&board.predicted, Stroke::Dotted, ink, '◆', 1),
-        (&board.filtered, Stroke::Solid, Style::new(), '●', EVERY / 2 + 1),
+        (
+            &board.filtered,
+            Stroke::Solid,
+            Style::new(),
+            '●',
+            EVERY / 2 + 1,
+        ),
     ];
     for (calibration, stroke, style, _, offset) in &drawn {
         let points = points(calibration.as_ref());
         let line: Vec<(f32, f32)> = points.iter().map(|point| at(point, point.held)).collect();
         plot.line(&line, *stroke, *style);
         for point in points.iter().skip(*offset).step_by(EVERY) {
-            plot.line(&[at(point, point.low), at(point, point.high)], Stroke::Solid, *style);
+            plot.line(
+                &[at(point, point.low), at(point, point.high)],
+                Stroke::Solid,
+                *style,
+            );
         }
     }
     for (calibration, _, style, mark, offset) in drawn {
-        for point in points(calibration.as_ref()).iter().skip(offset).step_by(EVERY) {
+        for point in points(calibration.as_ref())
+            .iter()
+            .skip(offset)
+            .step_by(EVERY)
+        {
             plot.mark(at(point, point.held), mark, strong().patch(style));
         }
     }

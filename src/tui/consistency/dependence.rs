@@ -37,7 +37,14 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let inner = below_title(pane);
     let sensors = sensors(board);
     if sensors.is_empty() {
-        text(buf, inner, 0, 0, "no product of experts, or too few episodes", dim());
+        text(
+            buf,
+            inner,
+            0,
+            0,
+            "no product of experts, or too few episodes",
+            dim(),
+        );
         return;
     }
     let ink = |expert: Expert| strong().patch(face.depth.ink(expert.rgb()));
@@ -62,10 +69,24 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             right(buf, inner, end(column), at, &value, style);
         }
         if let Some((_, alpha)) = board.alphas.iter().find(|(of, _)| *of == expert) {
-            right(buf, inner, fitted, at, &format!("{:.2}", alpha.alpha), Style::new());
+            right(
+                buf,
+                inner,
+                fitted,
+                at,
+                &format!("{:.2}", alpha.alpha),
+                Style::new(),
+            );
             let [short, long] = reading(alpha.alpha);
             let fits = fitted + 2 + width(long) <= inner.width;
-            text(buf, inner, fitted + 2, at, if fits { long } else { short }, dim());
+            text(
+                buf,
+                inner,
+                fitted + 2,
+                at,
+                if fits { long } else { short },
+                dim(),
+            );
         }
     }
     let mut row = 1 + sensors.len() as u16;
@@ -73,7 +94,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         row = sentence(buf, inner, row, &dependence.sentence, Style::new());
     }
     if !board.alphas.is_empty() {
-        let from = format!("α fitted on {}: a reading, the model stays as it is", board.alphas_from);
+        let from = format!(
+            "α fitted on {}: a reading, the model stays as it is",
+            board.alphas_from
+        );
         sentence(buf, inner, row, &from, dim());
     }
 }
@@ -90,7 +114,10 @@ fn sensors(board: &BoardView) -> Vec<Expert> {
 fn rho(board: &BoardView, a: usize, b: usize) -> Option<f64> {
     let pairs = &board.dependence.as_ref()?.pairs;
     let same = |(x, y): (usize, usize)| (x, y) == (a, b) || (x, y) == (b, a);
-    pairs.iter().find(|pair| same((pair.a, pair.b))).map(|pair| pair.rho)
+    pairs
+        .iter()
+        .find(|pair| same((pair.a, pair.b)))
+        .map(|pair| pair.rho)
 }
 
 /// What a fitted α says of an expert as trained, short and long.

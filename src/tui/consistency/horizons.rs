@@ -37,7 +37,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     }
     let inner = below_title(pane);
     let both = || board.by_head.iter().chain(&board.by_propagation);
-    let means = || both().map(|at| at.mean as f32).filter(|mean| mean.is_finite());
+    let means = || {
+        both()
+            .map(|at| at.mean as f32)
+            .filter(|mean| mean.is_finite())
+    };
     let most = means().fold(0.0, f32::max);
     let is_log = most > LARGE;
     title(buf, pane, "NEES", "mean over episodes, not time", focused);
@@ -64,10 +68,16 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     };
     let line = |of: &[HorizonNees], value: fn(&HorizonNees) -> f64| -> Vec<(f32, f32)> {
-        of.iter().map(|at| (at.horizon as f32, value(at) as f32)).collect()
+        of.iter()
+            .map(|at| (at.horizon as f32, value(at) as f32))
+            .collect()
     };
     plot.line(&line(&board.by_head, |at| at.mean), Stroke::Dotted, ink);
-    plot.line(&line(&board.by_propagation, |at| at.mean), Stroke::Solid, Style::new());
+    plot.line(
+        &line(&board.by_propagation, |at| at.mean),
+        Stroke::Solid,
+        Style::new(),
+    );
     // The band is that of the most episodes; where fewer reach a horizon it would be wider there.
     if let Some(widest) = both().max_by_key(|at| at.episodes) {
         plot.level(widest.low as f32, Stroke::Sparse, dim());
@@ -81,7 +91,19 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         plot.mark(point, '●', strong());
     }
     let every = if last <= 6 { 1 } else { last.div_ceil(4) };
-    let label = |h: usize| (h as f32, if h == 0 { "now".to_owned() } else { format!("+{h}") });
-    let labels: Vec<_> = (0..=last).filter(|h| h.is_multiple_of(every)).map(label).collect();
+    let label = |h: usize| {
+        (
+            h as f32,
+            if h == 0 {
+                "now".to_owned()
+            } else {
+                format!("+{h}")
+            },
+        )
+    };
+    let labels: Vec<_> = (0..=last)
+        .filter(|h| h.is_multiple_of(every))
+        .map(label)
+        .collect();
     plot.draw(buf, &labels);
 }

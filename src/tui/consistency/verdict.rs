@@ -14,8 +14,8 @@ use crate::measure::calibration::{Calibration, CoveragePoint};
 use crate::session::snapshot::Snapshot;
 
 /// Where the two columns of numbers end.
-const FILTERED: u16 = 24;
-const PREDICTED: u16 = 37;
+const FILTERED: u16 = 23;
+const PREDICTED: u16 = 35;
 
 /// Draws the sentences, the most important first.
 pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -24,10 +24,22 @@ pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face)
     }
     let inner = below_title(pane);
     let read = board(snapshot);
-    let note = read.as_ref().map_or_else(|_| String::new(), |board| {
-        format!("{}, {}/{} episodes", board.split, board.episodes, board.total)
-    });
-    title(buf, pane, "consistency", &note, face.is_focused(Pane::Verdict));
+    let note = read.as_ref().map_or_else(
+        |_| String::new(),
+        |board| {
+            format!(
+                "{}, {}/{} episodes",
+                board.split, board.episodes, board.total
+            )
+        },
+    );
+    title(
+        buf,
+        pane,
+        "consistency",
+        &note,
+        face.is_focused(Pane::Verdict),
+    );
     let board = match read {
         Ok(board) => board,
         Err(why) => {
@@ -57,29 +69,80 @@ pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let last = board.by_head.last().filter(|_| board.by_head.len() > 1);
     let nees = [board.by_head.first(), last].map(|at| at.map(|at| at.mean));
     let rows: [(&str, [Option<String>; 2], &str); 7] = [
-        ("holds of 95 %", both.map(|c| c.and_then(held).map(|held| format!("{:.0} %", 100.0 * held))), ""),
-        ("NEES", nees.map(|nees| nees.map(|nees| format!("{nees:.1}"))), "2 is honest"),
-        ("  without R_p", [board.filtered_bare_nees.map(|nees| format!("{nees:.1}")), None], "probe taken as exact"),
-        ("off by", both.map(|c| c.map(|c| format!("{:.2}", c.area))), "area to the diagonal"),
-        ("tr P", both.map(|c| c.map(|c| format!("{:.1}", c.sharpness_cm2))), "cm², less is sharper"),
-        ("NLL", both.map(|c| c.map(|c| format!("{:.2}", c.nll))), "nats, lower is better"),
-        ("CRPS x, y", both.map(|c| c.map(|c| format!("{:.2} {:.2}", c.crps_cm[0], c.crps_cm[1]))), "cm"),
+        (
+            "holds of 95 %",
+            both.map(|c| {
+                c.and_then(held)
+                    .map(|held| format!("{:.0} %", 100.0 * held))
+            }),
+            "",
+        ),
+        (
+            "NEES",
+            nees.map(|nees| nees.map(|nees| format!("{nees:.1}"))),
+            "2 is honest",
+        ),
+        (
+            "  without R_p",
+            [
+                board.filtered_bare_nees.map(|nees| format!("{nees:.1}")),
+                None,
+            ],
+            "probe taken as exact",
+        ),
+        (
+            "off by",
+            both.map(|c| c.map(|c| format!("{:.2}", c.area))),
+            "area to the diagonal",
+        ),
+        (
+            "tr P",
+            both.map(|c| c.map(|c| format!("{:.1}", c.sharpness_cm2))),
+            "cm², less is sharper",
+        ),
+        (
+            "NLL",
+            both.map(|c| c.map(|c| format!("{:.2}", c.nll))),
+            "nats, lower is better",
+        ),
+        (
+            "CRPS x, y",
+            both.map(|c| c.map(|c| format!("{:.2} {:.2}", c.crps_cm[0], c.crps_cm[1]))),
+            "cm",
+        ),
     ];
     for (i, (name, values, note)) in rows.iter().enumerate() {
         let row = 1 + i as u16;
         text(buf, inner, 0, row, name, dim());
         for (value, end) in values.iter().zip([FILTERED, PREDICTED]) {
-            right(buf, inner, end, row, value.as_deref().unwrap_or("–"), Style::new());
+            right(
+                buf,
+                inner,
+                end,
+                row,
+                value.as_deref().unwrap_or("–"),
+                Style::new(),
+            );
         }
         if PREDICTED + 2 + width(note) <= inner.width {
             text(buf, inner, PREDICTED + 2, row, note, dim());
         }
     }
-    sentence(buf, inner, 9, "Averages over episodes, not along time: steps of one episode are not independent.", dim());
+    sentence(
+        buf,
+        inner,
+        9,
+        "Averages over episodes, not along time: steps of one episode are not independent.",
+        dim(),
+    );
 }
 
 /// The part held of a claimed 95 %.
 fn held(calibration: &Calibration) -> Option<f64> {
     let near = |point: &&CoveragePoint| (point.claimed - 0.95).abs() < 0.01;
-    calibration.coverage.iter().find(near).map(|point| point.held)
+    calibration
+        .coverage
+        .iter()
+        .find(near)
+        .map(|point| point.held)
 }

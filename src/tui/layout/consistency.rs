@@ -26,7 +26,10 @@ impl Layout {
         let rest = rows(rest, gap).1;
         let half = rest.width.saturating_sub(2).div_ceil(2);
         let numbers = if is_roomy { NUMBERS + 3 } else { NUMBERS };
-        let plots = rest.height.saturating_sub(numbers + gap).max(rest.height.min(7));
+        let plots = rest
+            .height
+            .saturating_sub(numbers + gap)
+            .max(rest.height.min(7));
         let (plots, rest) = rows(rest, plots);
         let (horizons, coverage) = columns(plots, half, 2);
         self.put(Pane::Horizons, horizons);

@@ -18,7 +18,14 @@ impl Layout {
     pub(super) fn position(&mut self, body: Rect, shape: Shape) {
         let is_roomy = body.height >= 32 && body.width >= 108;
         let gap = u16::from(is_roomy);
-        let above = self.put_timeline(body, if is_roomy { 6 } else { (body.height / 5).min(4) });
+        let above = self.put_timeline(
+            body,
+            if is_roomy {
+                6
+            } else {
+                (body.height / 5).min(4)
+            },
+        );
         let above = rows(above, above.height.saturating_sub(gap)).0;
         if above.width < PULLS + 2 + 24 {
             self.put(Pane::Position, above);

@@ -62,7 +62,11 @@ fn table(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) -> u16 
     for (view, reading) in std::iter::zip(&snapshot.experts, &fusion.experts) {
         let expert = view.expert;
         let ink = strong().patch(face.depth.ink(expert.rgb()));
-        let plain = if view.alpha > 0.0 { Style::new() } else { dim() };
+        let plain = if view.alpha > 0.0 {
+            Style::new()
+        } else {
+            dim()
+        };
         text(buf, pane, 0, row, &expert.letter().to_string(), ink);
         text(buf, pane, 2, row, expert.name(), plain);
         pair(buf, pane, row, reading.pull_m, plain);
@@ -76,7 +80,12 @@ fn table(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) -> u16 
     text(buf, pane, 0, row, "Σ sum", strong());
     pair(buf, pane, row, fusion.correction_m, strong());
     row += 1;
-    sentence(buf, pane, row, "sum: from the prior's position to the belief's; without: how far the belief moves when it leaves this step", dim())
+    // Edited controls have more to say where there is little room.
+    if pane.height < 20 && snapshot.control_edit.is_some() {
+        return row;
+    }
+    let words = "sum: from the prior's position to the belief's; without: how far the belief moves when it leaves this step";
+    sentence(buf, pane, row, words, dim())
 }
 
 fn pair(buf: &mut Buffer, pane: Rect, row: u16, value: Option<[f32; 2]>, style: Style) {
@@ -103,12 +112,19 @@ fn errors(buf: &mut Buffer, pane: Rect, first: u16, snapshot: &Snapshot) {
         }
     }
     if let Some(series) = &snapshot.series {
-        let now = |values: &[f32]| values.get(snapshot.cursor).copied().filter(|value| value.is_finite());
-        let shown = |value: Option<f32>| value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1}"));
+        let now = |values: &[f32]| {
+            values
+                .get(snapshot.cursor)
+                .copied()
+                .filter(|value| value.is_finite())
+        };
+        let shown = |value: Option<f32>| {
+            value.map_or_else(|| "–".to_owned(), |value| format!("{value:.1}"))
+        };
         line("NEES", &shown(now(&series.nees)), "95 % below 6.0");
         line("  no R_p", &shown(now(&series.nees_bare)), "probe exact");
     }
     if let Some(edit) = &snapshot.control_edit {
-        sentence(buf, pane, row + 1, &edited::words(edit), strong());
+        sentence(buf, pane, row + 1, &edited::words(edit, if pane.height < 20 { 0 } else { u16::MAX }), strong());
     }
 }

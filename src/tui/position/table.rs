@@ -22,9 +22,9 @@ use super::super::theme::{OTHER, PREDICTION, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
-use super::{at_step, dots, ellipses, marks, masses, off, paths, window};
-use crate::modality::Expert;
+use super::{at_step, dots, ellipses, marked, marks, masses, off, paths, window};
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
+use crate::modality::Expert;
 use crate::session::snapshot::{PositionView, Snapshot};
 
 /// Rows of the legend at most.
@@ -44,7 +44,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     };
     title(buf, pane, "table cm", &off(position), focused);
     let inner = below_title(pane);
-    let other = snapshot.other.as_ref().and_then(|other| other.position.as_ref());
+    let other = snapshot
+        .other
+        .as_ref()
+        .and_then(|other| other.position.as_ref());
     let extent = Extent::of(position).map(|extent| extent.and(other.and_then(Extent::of)));
     // The window does not depend on what the legend says, or the picture would jump.
     let room = LEGEND.min(inner.height / 4);
@@ -84,11 +87,15 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     {
         put(buf, plane, column, row, 'r', strong());
     }
-    let taken = arrows.as_ref().map(|arrows| arrows.cells(&view)).unwrap_or_default();
+    let marked = marked(&view, position, snapshot.cursor);
+    let letters = arrows
+        .iter()
+        .flat_map(|arrows| arrows.cells(&view, &marked));
+    let taken: Vec<(u16, u16)> = letters.chain(marked.iter().copied()).collect();
     ghosts(buf, (plane, &taken), &view, snapshot, face);
     marks(buf, plane, &view, position, snapshot.cursor, face);
     if let Some(arrows) = &arrows {
-        arrows.draw(buf, plane, &view, face);
+        arrows.draw(buf, (plane, &marked), &view, face);
     }
 
     let cut = at_step(&position.belief, snapshot.cursor)
@@ -138,14 +145,12 @@ impl Said {
         } else {
             masses()
         };
-        let letters: String = snapshot
-            .experts
-            .iter()
-            .map(|view| view.expert)
-            .filter(|&expert| expert != Expert::Prior)
-            .map(|expert| format!("─{}", expert.letter()))
-            .collect();
-        let chain = format!("{}{letters}", Expert::Prior.letter());
+        let experts = snapshot.experts.iter().map(|view| view.expert);
+        let sensors = experts.filter(|&expert| expert != Expert::Prior);
+        let mut chain = Expert::Prior.letter().to_string();
+        for expert in sensors {
+            chain.extend(['─', expert.letter()]);
+        }
         let pulls = match self.arrows {
             Some(factor) if factor > 1.0 => format!("pulls ×{factor}, sum Σ"),
             _ => "pulls, sum ●".to_owned(),

@@ -23,8 +23,15 @@ const CIVIDIS: [Rgb; 6] = [
 
 /// The range for these values.
 pub fn range(values: &[f32]) -> f32 {
-    let most = values.iter().copied().filter(|value| value.is_finite()).fold(0.0, f32::max);
-    RANGES.into_iter().find(|&range| most <= range).unwrap_or(1.0)
+    let most = values
+        .iter()
+        .copied()
+        .filter(|value| value.is_finite())
+        .fold(0.0, f32::max);
+    RANGES
+        .into_iter()
+        .find(|&range| most <= range)
+        .unwrap_or(1.0)
 }
 
 /// Draws a map of so many columns, as large as it fits; nothing where the size lies.
@@ -37,7 +44,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, (width, values): (usize, &[f32]), dept
     let raster = Raster {
         width,
         height,
-        values: values.iter().map(|value| (value / range).clamp(0.0, 1.0)).collect(),
+        values: values
+            .iter()
+            .map(|value| (value / range).clamp(0.0, 1.0))
+            .collect(),
         signed: false,
     };
     if depth == Depth::Plain {

@@ -14,7 +14,7 @@ use ratatui::style::Style;
 
 use super::super::braille::Stroke;
 use super::super::face::Face;
-use super::super::paint::{below_title, text, title};
+use super::super::paint::{below_title, text, title, width};
 use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{OTHER, PREDICTION, dim, strong};
@@ -51,9 +51,17 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .filter(|line| line.at(snapshot.cursor).is_finite())
         .map(|line| format!("{}{:.1}", line.mark, line.at(snapshot.cursor)))
         .collect();
-    title(buf, pane, "PSNR dB", &now.join(" "), focused);
+    // Where not all values fit, those of the first model do.
+    let note = now.join(" ");
+    let fits = width(&note) + 10 <= pane.width;
+    let note = if fits {
+        note
+    } else {
+        now[..now.len().min(2)].join(" ")
+    };
+    title(buf, pane, "PSNR dB", &note, focused);
     let inner = below_title(pane);
-    let names = names(snapshot);
+    let names = names(snapshot, pane.width);
     let entries: Vec<Entry> = std::iter::zip(&lines, &names)
         .map(|(line, name)| (line.glyph, line.style, name.as_str()))
         .collect();
@@ -65,7 +73,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .iter()
         .flat_map(|line| steps.iter().map(|&(_, step)| line.at(step)));
     let Some(y) = Scale::around(values) else {
-        let why = if snapshot.busy { "computing…" } else { "nothing was predicted yet" };
+        let why = if snapshot.busy {
+            "computing…"
+        } else {
+            "nothing was predicted yet"
+        };
         text(buf, inner, 0, 0, why, dim());
         return;
     };
@@ -76,24 +88,32 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         plot.upright(now as f32, dim());
     }
     for line in &lines {
-        let points: Vec<(f32, f32)> = steps.iter().map(|&(h, step)| (h as f32, line.at(step))).collect();
+        let points: Vec<(f32, f32)> = steps
+            .iter()
+            .map(|&(h, step)| (h as f32, line.at(step)))
+            .collect();
         plot.line(&points, line.stroke, line.style);
     }
     if let Some(now) = cursor_ahead(snapshot) {
         for line in &lines {
-            plot.mark((now as f32, line.at(snapshot.cursor)), line.mark, strong().patch(line.style));
+            plot.mark(
+                (now as f32, line.at(snapshot.cursor)),
+                line.mark,
+                strong().patch(line.style),
+            );
         }
     }
     plot.draw(buf, &labels(last));
 }
 
 /// What the lines are called, in their order.
-fn names(snapshot: &Snapshot) -> Vec<String> {
-    let mut names = vec!["belief".to_owned(), "prediction".to_owned()];
+fn names(snapshot: &Snapshot, columns: u16) -> Vec<String> {
+    let prediction = if columns < 26 { "pred" } else { "prediction" };
+    let mut names = vec!["belief".to_owned(), prediction.to_owned()];
     if let Some(other) = &snapshot.other {
         let model = snapshot.models.get(other.model);
         let model = model.map_or("B", |model| &model.name);
-        names.extend([format!("{model} belief"), "prediction".to_owned()]);
+        names.extend([format!("{model} belief"), prediction.to_owned()]);
     }
     names
 }

@@ -29,7 +29,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     }
     let Some(spread) = &snapshot.spread else {
         title(buf, pane, "samples", "", focused);
-        let why = if snapshot.busy { "computing…" } else { "nothing was predicted yet" };
+        let why = if snapshot.busy {
+            "computing…"
+        } else {
+            "nothing was predicted yet"
+        };
         text(buf, below_title(pane), 0, 0, why, dim());
         return;
     };
@@ -42,14 +46,22 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         let why = if ahead.is_some() {
             "decoding…".to_owned()
         } else {
-            format!("from step {} to {}", snapshot.start + 2, snapshot.start + snapshot.horizon + 1)
+            format!(
+                "from step {} to {}",
+                snapshot.start + 2,
+                snapshot.start + snapshot.horizon + 1
+            )
         };
         text(buf, inner, 0, 0, &why, dim());
         return;
     };
 
     // On a low pane pictures say more than sentences.
-    let sentences = if inner.height < 8 { short(frames) } else { sentences(frames) };
+    let sentences = if inner.height < 8 {
+        short(frames)
+    } else {
+        sentences(frames)
+    };
     let lines = sentences.iter().map(|line| wrap(line, inner.width).len());
     let wanted = (lines.sum::<usize>() as u16).min(inner.height / 2);
     let side = (inner.width.saturating_sub(2) / 3).min(inner.height.saturating_sub(1 + wanted) * 2);
@@ -89,14 +101,22 @@ fn images(buf: &mut Buffer, pane: Rect, (side, frames): (u16, &SampleFrames), fa
         };
         match i {
             0 => picture(buf, image, &Raster::from(&*frames.mean), face),
-            1 => heat::draw(buf, image, (frames.mean.width, &frames.deviation), face.depth),
+            1 => heat::draw(
+                buf,
+                image,
+                (frames.mean.width, &frames.deviation),
+                face.depth,
+            ),
             _ => picture(buf, image, &Raster::from(&*frames.sample), face),
         }
     }
 }
 
 fn picture(buf: &mut Buffer, pane: Rect, raster: &Raster, face: &Face) {
-    let shown = face.pixels.as_ref().is_some_and(|pixels| pixels.draw(buf, pane, raster));
+    let shown = face
+        .pixels
+        .as_ref()
+        .is_some_and(|pixels| pixels.draw(buf, pane, raster));
     if !shown {
         raster.draw(buf, pane, face.depth);
     }
@@ -114,8 +134,12 @@ fn sentences(frames: &SampleFrames) -> Vec<String> {
     let said = |name: &str, index: Option<f32>| {
         let index = index.filter(|index| index.is_finite())?;
         Some(match index {
-            index if index < 0.9 => format!("{name} is blurrier than the truth: {index:.2} of its edges"),
-            index if index > 1.1 => format!("{name} has more edges than the truth: {index:.2} of its edges"),
+            index if index < 0.9 => {
+                format!("{name} is blurrier than the truth: {index:.2} of its edges")
+            }
+            index if index > 1.1 => {
+                format!("{name} has more edges than the truth: {index:.2} of its edges")
+            }
             index => format!("{name} is as sharp as the truth: {index:.2} of its edges"),
         })
     };

@@ -28,7 +28,10 @@ use crate::session::snapshot::spread::SpreadView;
 
 /// σ at each step of the horizon: head, propagated, sampled; the unit is the title's.
 fn sigmas(spread: &SpreadView) -> (bool, Vec<[f32; 3]>) {
-    let positions = std::iter::zip(&spread.head, std::iter::zip(&spread.propagated, &spread.sampled));
+    let positions = std::iter::zip(
+        &spread.head,
+        std::iter::zip(&spread.propagated, &spread.sampled),
+    );
     let sigma = |[xx, _, yy]: &[f32; 3]| (xx + yy).max(0.0).sqrt() * 100.0;
     let positions: Vec<[f32; 3]> = positions
         .map(|(head, (propagated, sampled))| [sigma(head), sigma(propagated), sigma(sampled)])
@@ -49,7 +52,11 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let inner = below_title(pane);
     let Some(spread) = &snapshot.spread else {
         title(buf, pane, "σ of the rollout", "", focused);
-        let why = if snapshot.busy { "computing…" } else { "nothing was predicted yet" };
+        let why = if snapshot.busy {
+            "computing…"
+        } else {
+            "nothing was predicted yet"
+        };
         text(buf, inner, 0, 0, why, dim());
         return;
     };
@@ -61,7 +68,9 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         (true, true) => "σ cm",
         (false, _) => "σ of z",
     };
-    let note = now.map(|(_, [head, propagated, sampled])| format!("─{propagated:.2} ○{sampled:.2} ┈{head:.2}"));
+    let note = now.map(|(_, [head, propagated, sampled])| {
+        format!("─{propagated:.2} ○{sampled:.2} ┈{head:.2}")
+    });
     title(buf, pane, name, &note.unwrap_or_default(), focused);
     let Some(last) = sigmas.len().checked_sub(1) else {
         text(buf, inner, 0, 0, "nothing was predicted yet", dim());
@@ -73,7 +82,15 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         ("─", Style::new(), "A P Aᵀ+Q"),
         ("○", ink, "samples"),
         ("┈", ink, "head"),
-        ("", dim(), if is_position { "without R_p" } else { "no probe: latent" }),
+        (
+            "",
+            dim(),
+            if is_position {
+                "without R_p"
+            } else {
+                "no probe: latent"
+            },
+        ),
     ];
     let plot_pane = legend_below(buf, inner, &entries);
 

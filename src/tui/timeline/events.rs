@@ -20,7 +20,8 @@ use crate::session::snapshot::{EpisodeView, EventKind, Snapshot};
 /// The symbols of each step that has some, the most important first.
 pub fn symbols(snapshot: &Snapshot, step: usize) -> Vec<char> {
     let has = |kind: EventKind| {
-        let is_here = |event: &crate::session::snapshot::Event| event.step == step && event.kind == kind;
+        let is_here =
+            |event: &crate::session::snapshot::Event| event.step == step && event.kind == kind;
         snapshot.events.iter().any(is_here)
     };
     let is_flagged = snapshot
@@ -32,7 +33,9 @@ pub fn symbols(snapshot: &Snapshot, step: usize) -> Vec<char> {
         (has(EventKind::Mark), '*'),
         (has(EventKind::Contact), '^'),
     ];
-    all.into_iter().filter_map(|(is, symbol)| is.then_some(symbol)).collect()
+    all.into_iter()
+        .filter_map(|(is, symbol)| is.then_some(symbol))
+        .collect()
 }
 
 /// The steps that flags speak of. A gap is stamped with the last sample before it; what is missing is missing from the
@@ -47,10 +50,14 @@ fn flagged(episode: &EpisodeView) -> impl Iterator<Item = usize> {
 
 /// The modalities whose input is damaged at a step.
 fn damaged(snapshot: &Snapshot, step: usize) -> impl Iterator<Item = Modality> {
-    snapshot.corruptions.iter().filter_map(move |(modality, corruption)| {
-        let is_within = step >= corruption.from && corruption.until.is_none_or(|until| step < until);
-        is_within.then_some(*modality)
-    })
+    snapshot
+        .corruptions
+        .iter()
+        .filter_map(move |(modality, corruption)| {
+            let is_within =
+                step >= corruption.from && corruption.until.is_none_or(|until| step < until);
+            is_within.then_some(*modality)
+        })
 }
 
 /// The expert that looks at a modality alone: its letter and colour.
@@ -77,9 +84,14 @@ pub fn row(buf: &mut Buffer, pane: Rect, axis: Axis, snapshot: &Snapshot, face: 
     for first in (0..axis.steps).step_by(axis.every) {
         let steps = first..(first + axis.every).min(axis.steps);
         let column = axis.column(first);
-        let is_selected = |step: usize| selected.as_ref().is_some_and(|range| range.contains(&step));
-        let ground = if let Some(modality) = steps.clone().find_map(|step| damaged(snapshot, step).next()) {
-            let ink = expert_of(modality).map_or_else(Style::new, |expert| face.depth.ink(expert.rgb()));
+        let is_selected =
+            |step: usize| selected.as_ref().is_some_and(|range| range.contains(&step));
+        let ground = if let Some(modality) = steps
+            .clone()
+            .find_map(|step| damaged(snapshot, step).next())
+        {
+            let ink =
+                expert_of(modality).map_or_else(Style::new, |expert| face.depth.ink(expert.rgb()));
             Some(('~', ink))
         } else {
             steps.clone().any(is_selected).then(|| ('▔', strong()))
@@ -105,10 +117,24 @@ pub fn row(buf: &mut Buffer, pane: Rect, axis: Axis, snapshot: &Snapshot, face: 
 }
 
 /// Draws the marks on the track, where they have no row of their own.
-pub fn over_track(buf: &mut Buffer, pane: Rect, row: u16, axis: Axis, snapshot: &Snapshot, face: &Face) {
+pub fn over_track(
+    buf: &mut Buffer,
+    pane: Rect,
+    row: u16,
+    axis: Axis,
+    snapshot: &Snapshot,
+    face: &Face,
+) {
     for step in 0..axis.steps {
         if let Some(&symbol) = symbols(snapshot, step).first() {
-            put(buf, pane, axis.column(step), row, symbol, style(symbol, face));
+            put(
+                buf,
+                pane,
+                axis.column(step),
+                row,
+                symbol,
+                style(symbol, face),
+            );
         }
     }
 }
@@ -127,8 +153,16 @@ mod tests {
         let mut buf = Buffer::empty(Rect::new(0, 0, width, 1));
         let pane = buf.area;
         let steps = snapshot.episode.as_ref().unwrap().secs.len();
-        row(&mut buf, pane, Axis::of(width, steps), snapshot, &Face::default());
-        crate::tui::print::to_text(&buf, false).trim_end().to_owned()
+        row(
+            &mut buf,
+            pane,
+            Axis::of(width, steps),
+            snapshot,
+            &Face::default(),
+        );
+        crate::tui::print::to_text(&buf, false)
+            .trim_end()
+            .to_owned()
     }
 
     #[test]
@@ -136,9 +170,12 @@ mod tests {
         let mut snapshot = fixture::snapshot(6, 16);
         snapshot.events = Arc::default();
         let mut episode = (**snapshot.episode.as_ref().unwrap()).clone();
-        episode.flags = ["/wrench at 1.2 s: gap of 0.9 s", "/tf at 2.0 s: stamps run backwards by 1.0 s"]
-            .map(str::to_owned)
-            .to_vec();
+        episode.flags = [
+            "/wrench at 1.2 s: gap of 0.9 s",
+            "/tf at 2.0 s: stamps run backwards by 1.0 s",
+        ]
+        .map(str::to_owned)
+        .to_vec();
         episode.flagged_steps = vec![4, 7];
         snapshot.episode = Some(Arc::new(episode));
         assert_eq!(drawn(&snapshot, 31), "events      ! !");
@@ -157,6 +194,6 @@ mod tests {
             seed: 0,
         };
         snapshot.corruptions = vec![(Modality::Vision, corruption)];
-        assert_eq!(drawn(&snapshot, 31), "events   ▔▔^▔▔*  ~~~         ~V");
+        assert_eq!(drawn(&snapshot, 31), "events   ▔▔^▔▔* ~~~          ~V");
     }
 }
