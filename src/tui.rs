@@ -17,6 +17,7 @@
 //! each stands, [`face`] holds what only this face knows, [`app`] turns keys and clicks into commands, [`terminal`] runs it all, [`print()`] writes a frame as text.
 
 pub mod app;
+pub mod compare;
 pub mod face;
 pub mod layout;
 pub mod pixels;

@@ -40,6 +40,12 @@ pub enum FaceCommand {
     NextView,
     /// Copy the state string.
     CopyState,
+    /// What two models differ by, or no longer.
+    Difference,
+    /// Model A and model B by turns, or no longer.
+    Blink,
+    /// Model A on the left of a line, model B on its right, or no longer.
+    Wipe,
 }
 
 /// What the keys after this one are for.

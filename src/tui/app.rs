@@ -1,13 +1,19 @@
 //! Keys, clicks and drags in; commands to the session and changes of the face out. Knows no terminal.
 
+mod list;
+
+use std::time::Duration;
+
 use ratatui::layout::{Position, Rect, Size};
 
 use super::axis::Axis;
-use super::episodes::list::{Asked, List};
+use super::compare::{BLINK, Compare};
 use super::experts::expert_at;
 use super::face::Face;
+use super::frames::part_of_compared;
 use super::help;
-use super::view::Pane;
+use super::lattice::set_at;
+use super::view::{Pane, View};
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::input::{Action, Input};
@@ -47,7 +53,9 @@ pub struct App {
     pub to_copy: Option<String>,
     input: Input,
     size: Size,
-    seeking: bool,
+    dragged: Option<Pane>,
+    /// How long the present image of a blinking pair has been shown.
+    blinked: Duration,
 }
 
 impl App {
@@ -59,7 +67,8 @@ impl App {
             to_copy: None,
             input: Input::default(),
             size,
-            seeking: false,
+            dragged: None,
+            blinked: Duration::ZERO,
         }
     }
 
@@ -69,18 +78,49 @@ impl App {
         self.face.help = self.face.help.filter(|&page| page < help::pages(size));
     }
 
+    /// Lets time pass for playback, for what was computed and for what blinks; whether anything looks other than before.
+    pub fn tick(&mut self, dt: Duration) -> bool {
+        let changed = self.session.update(dt);
+        let Compare::Blink(other) = self.face.compare else {
+            return changed;
+        };
+        self.blinked += dt;
+        if self.blinked < BLINK {
+            return changed;
+        }
+        // However late, it changes over once: nothing is caught up with.
+        self.blinked = Duration::ZERO;
+        self.face.compare = Compare::Blink(!other);
+        true
+    }
+
+    /// How long nothing happens by itself; none: until a key, or until something is computed.
+    pub fn next_wake(&self) -> Option<Duration> {
+        let blink = matches!(self.face.compare, Compare::Blink(_))
+            .then(|| BLINK.saturating_sub(self.blinked));
+        [self.session.next_wake(), blink]
+            .into_iter()
+            .flatten()
+            .min()
+    }
+
     /// Takes one key.
     pub fn press(&mut self, key: &Key) -> Flow {
         let snapshot = self.session.snapshot();
-        if self.face.help.is_none() && self.list_takes(key, &snapshot) {
+        self.press_on(key, &snapshot)
+    }
+
+    /// Takes one key as it is meant on this snapshot.
+    pub(super) fn press_on(&mut self, key: &Key, snapshot: &Snapshot) -> Flow {
+        if self.list_takes(key, snapshot) || self.choose_set(key, snapshot) {
             return Flow::Go;
         }
-        let flow = match self.input.press(key, &snapshot) {
+        let flow = match self.input.press(key, snapshot) {
             Some(Action::Session(command)) => {
                 self.session.apply(command);
                 Flow::Go
             }
-            Some(Action::Face(command)) => self.face_command(command, &snapshot),
+            Some(Action::Face(command)) => self.face_command(command, snapshot),
             Some(Action::Explain { error, text }) => {
                 self.session.say(Message { error, text });
                 Flow::Go
@@ -92,26 +132,26 @@ impl App {
         flow
     }
 
-    /// Opens the list of episodes, or closes it.
-    pub fn toggle_episodes(&mut self) {
-        let open = List::open(&self.session.snapshot());
-        self.face.episodes = self.face.episodes.is_none().then_some(open);
-    }
-
-    /// Whether the open list has taken the key.
-    fn list_takes(&mut self, key: &Key, snapshot: &Snapshot) -> bool {
-        let Some(list) = &mut self.face.episodes else {
+    /// In the lattice up and down choose a set and Enter switches to it; whether the key was one of these.
+    fn choose_set(&mut self, key: &Key, snapshot: &Snapshot) -> bool {
+        let face = &mut self.face;
+        let meant = face.view == View::Lattice && face.focus == Pane::Sets && face.help.is_none();
+        let Some(lattice) = snapshot.lattice.as_ref() else {
             return false;
         };
-        match list.press(key, snapshot) {
-            Asked::Usual => return false,
-            Asked::Nothing => {}
-            Asked::Command(command) => self.session.apply(command),
-            Asked::Close => self.face.episodes = None,
-            Asked::Open(index) => {
-                self.face.episodes = None;
-                self.session.apply(Command::SelectEpisode(index));
+        let count = lattice.cells.len();
+        if !meant || self.input.mode().is_some() || count == 0 {
+            return false;
+        }
+        let chosen = face.lattice_cell.min(count - 1);
+        match key.name() {
+            "<up>" => face.lattice_cell = (chosen + count - 1) % count,
+            "<down>" => face.lattice_cell = (chosen + 1) % count,
+            "<enter>" => {
+                let active = lattice.cells[chosen].active.clone();
+                self.session.apply(Command::UseSet(active));
             }
+            _ => return false,
         }
         true
     }
@@ -133,6 +173,12 @@ impl App {
                 }
             }
             FaceCommand::NextView => face.open(face.view.next()),
+            FaceCommand::Difference => face.compare = face.compare.difference(),
+            FaceCommand::Blink => {
+                self.blinked = Duration::ZERO;
+                face.compare = face.compare.blink();
+            }
+            FaceCommand::Wipe => face.compare = face.compare.wipe(),
             FaceCommand::CopyState => {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
@@ -155,9 +201,12 @@ impl App {
         let timeline = layout.get(Pane::Timeline);
         match pointer {
             Pointer::Wheel(by) => self.session.apply(Command::Step(by)),
-            Pointer::Release => self.seeking = false,
-            Pointer::Drag if self.seeking => self.seek(timeline, at, &snapshot),
-            Pointer::Drag => {}
+            Pointer::Release => self.dragged = None,
+            Pointer::Drag => match self.dragged {
+                Some(Pane::Timeline) => self.seek(timeline, at, &snapshot),
+                Some(Pane::Frames) => self.wipe(layout.get(Pane::Frames), at, &snapshot),
+                _ => {}
+            },
             Pointer::Press => {
                 let Some((pane, rect)) = layout.at(at) else {
                     return;
@@ -165,10 +214,14 @@ impl App {
                 if self.face.view.panes().contains(&pane) {
                     self.face.focus = pane;
                 }
+                self.dragged = Some(pane);
                 match pane {
-                    Pane::Timeline => {
-                        self.seeking = true;
-                        self.seek(rect, at, &snapshot);
+                    Pane::Timeline => self.seek(rect, at, &snapshot),
+                    Pane::Frames => self.wipe(rect, at, &snapshot),
+                    Pane::Sets => {
+                        if let Some(set) = set_at(rect, at, &snapshot, &self.face) {
+                            self.face.lattice_cell = set;
+                        }
                     }
                     Pane::Experts => {
                         if let Some(expert) = expert_at(at.y - rect.y, snapshot.experts.len()) {
@@ -180,6 +233,15 @@ impl App {
                     _ => {}
                 }
             }
+        }
+    }
+
+    /// Moves the border of a wipe to the mouse.
+    fn wipe(&mut self, frames: Rect, at: Position, snapshot: &Snapshot) {
+        if matches!(self.face.compare, Compare::Wipe(_))
+            && let Some(border) = part_of_compared(frames, at, snapshot, &self.face)
+        {
+            self.face.compare = Compare::Wipe(border);
         }
     }
 

@@ -1,5 +1,6 @@
 //! What only this face knows: where the focus is, what lies over the screen, what the terminal can show.
 
+use super::compare::Compare;
 use super::episodes::list::List;
 use super::pixels::Pixels;
 use super::theme::Depth;
@@ -24,6 +25,8 @@ pub struct Face {
     pub expert: usize,
     /// The chosen cell of the lattice.
     pub lattice_cell: usize,
+    /// How two images share the compared place of the frame row.
+    pub compare: Compare,
     /// Colours of the terminal.
     pub depth: Depth,
     /// The terminal's own images, where it has them.
@@ -42,6 +45,7 @@ impl Default for Face {
             prompt: None,
             expert: 0,
             lattice_cell: 0,
+            compare: Compare::Off,
             depth: Depth::default(),
             pixels: None,
         }

@@ -6,6 +6,6 @@ pub mod pairs;
 pub mod series;
 
 mod bounds;
-mod empty;
+pub mod empty;
 
 pub use bounds::{mark, range};

@@ -6,12 +6,16 @@
 //!  1  ┄┄V─●──
 //!    -3.1        0       3.1
 //! ```
+//! Alone on the screen it shows the raw numbers of every expert.
+
+mod numbers;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::face::Face;
+use super::layout::{columns, rows};
 use super::paint::{below_title, put, right, text, title, width};
 use super::theme::{dim, strong};
 use super::view::Pane;
@@ -27,22 +31,39 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     }
     let expert = snapshot.experts.get(face.expert);
-    let note = expert.map_or_else(
-        || "● belief".to_owned(),
-        |view| match view.expert.letter() {
-            letter if pane.width < 30 => format!("● belief {letter}"),
-            letter => format!("● belief {letter} {}", view.expert.name()),
-        },
-    );
+    let note = if face.is_zoomed(Pane::Latents) {
+        "of every expert".to_owned()
+    } else {
+        expert.map_or_else(
+            || "● belief".to_owned(),
+            |view| match view.expert.letter() {
+                letter if pane.width < 30 => format!("● belief {letter}"),
+                letter => format!("● belief {letter} {}", view.expert.name()),
+            },
+        )
+    };
     title(buf, pane, "latents", &note, face.is_focused(Pane::Latents));
     let pane = below_title(pane);
     let Some(belief) = &snapshot.belief else {
         text(buf, pane, 0, 0, "no belief at this step", dim());
         return;
     };
+    let pane = if face.is_zoomed(Pane::Latents) {
+        let table = numbers::width_of(snapshot.experts.len()).min(pane.width);
+        let (table, rest) = columns(pane, table, 3);
+        numbers::draw(buf, table, snapshot, face);
+        // The intervals stand in line with the numbers.
+        rows(rest, 2).1
+    } else {
+        pane
+    };
     let other = expert.and_then(|view| Some((view.expert, view.latent.as_ref()?)));
     let reach = reach(belief).max(other.map_or(0.0, |(_, latent)| reach(latent)));
-    let table = if pane.width >= TABLE + 24 { TABLE } else { 0 };
+    let table = if pane.width >= TABLE + 24 && !face.zoomed {
+        TABLE
+    } else {
+        0
+    };
     let axis = Axis {
         from: NUMBERS,
         columns: pane.width.saturating_sub(NUMBERS + table),
@@ -55,6 +76,8 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let dims = belief.mean.len().min(usize::from(pane.height - 1));
     for d in 0..dims {
         let row = d as u16;
+        let active = snapshot.fusion.as_ref().map(|fusion| &fusion.active);
+        let moves = active.is_none_or(|active| active.get(d).copied().unwrap_or(true));
         right(buf, pane, 2, row, &d.to_string(), dim());
         put(buf, pane, axis.at(0.0), row, '·', dim());
         if let Some((expert, latent)) = other
@@ -75,8 +98,15 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             }
         }
         if let Some((mean, sigma)) = interval(belief, d) {
-            axis.line(buf, pane, row, (mean, sigma), '─', Style::new());
-            put(buf, pane, axis.at(mean), row, '●', strong());
+            // A dimension that never moves over the data is greyed, and hollow where there are no colours.
+            let (mark, style) = if moves {
+                ('●', strong())
+            } else {
+                ('○', dim())
+            };
+            let line = if moves { Style::new() } else { dim() };
+            axis.line(buf, pane, row, (mean, sigma), '─', line);
+            put(buf, pane, axis.at(mean), row, mark, style);
             if table > 0 {
                 numbers(
                     buf,

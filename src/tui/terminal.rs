@@ -136,7 +136,7 @@ fn drive(app: &mut App, events: &Receiver<Wake>) -> io::Result<Ended> {
     let mut before = Instant::now();
     loop {
         let now = Instant::now();
-        changed |= app.session.update(now - before);
+        changed |= app.tick(now - before);
         before = now;
         if let Some(pixels) = &mut app.face.pixels {
             changed |= pixels.receive();
@@ -144,7 +144,7 @@ fn drive(app: &mut App, events: &Receiver<Wake>) -> io::Result<Ended> {
         if std::mem::take(&mut changed) {
             show(&mut terminal, app)?;
         }
-        let first = match app.session.next_wake() {
+        let first = match app.next_wake() {
             Some(soon) => match events.recv_timeout(soon) {
                 Ok(wake) => Some(wake),
                 Err(RecvTimeoutError::Timeout) => None,

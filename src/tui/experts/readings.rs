@@ -24,11 +24,11 @@ const NARROW: Columns = [
     (33, "cm"),
 ];
 const WIDE: Columns = [
-    (8, "NIS head"),
-    (22, "NIS A P Aᵀ+Q"),
-    (33, "info nats"),
-    (44, "without σ"),
-    (55, "without cm"),
+    (10, "NIS head"),
+    (24, "NIS A P Aᵀ+Q"),
+    (35, "info nats"),
+    (46, "without σ"),
+    (58, "without cm"),
 ];
 
 /// Columns that the readings take out of so many; none where they do not fit.
@@ -105,8 +105,8 @@ pub fn notes(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
         }
     }
     if pane.height > 1 {
-        let scale = "Shares follow the training loss's scale too: one σ² for every pixel and sensor value. Only NEES \
-                     and coverage tie them to cm.";
+        let scale = "Shares also follow the loss's scale (one σ² a pixel or sensor value); only NEES and coverage tie \
+                     them to cm.";
         let below = Rect {
             y: pane.y + 1,
             height: pane.height - 1,
@@ -154,6 +154,6 @@ mod tests {
     fn readings_stand_only_where_all_fit() {
         assert_eq!(columns_of(32), 0);
         assert_eq!(columns_of(33), 33);
-        assert_eq!(columns_of(200), 55);
+        assert_eq!(columns_of(200), 58);
     }
 }

@@ -189,14 +189,7 @@ fn carried(buf: &mut Buffer, pane: Rect, grid: Grid, snapshot: &Snapshot, depth:
             bars(buf, part(parts.variance), grid, name, of, &active);
         }
         let metres: Vec<f32> = importance.iter().map(|&metres| metres as f32).collect();
-        bars(
-            buf,
-            part(parts.importance),
-            grid,
-            "shuffl",
-            &metres,
-            &active,
-        );
+        bars(buf, part(parts.importance), grid, "perm", &metres, &active);
     }
     if numbered == 1 {
         let row = parts.share + 2 * (parts.axis + parts.variance + parts.gap) + parts.importance;

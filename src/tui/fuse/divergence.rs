@@ -20,7 +20,8 @@ use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::reading::FusionView;
 use crate::tui::face::Face;
-use crate::tui::paint::{below_title, right, short, text, title, width};
+use crate::tui::layout::rows;
+use crate::tui::paint::{below_title, paragraph, right, short, text, title, width, wrapped};
 use crate::tui::theme::{dim, strong};
 use crate::tui::view::Pane;
 
@@ -28,6 +29,13 @@ use crate::tui::view::Pane;
 const MEAN_END: u16 = 18;
 const SPREAD_END: u16 = 25;
 const BAR: u16 = 27;
+/// What the parts say, where there is room below the terms.
+const WORDS_BELOW: [&str; 3] = [
+    "A large mean part of belief‖V: the expert was overruled. A large spread part: it is merely vague.",
+    "V‖prior: what the expert alone would claim to know beyond the prediction.",
+    "belief‖prior, the surprise: how much all sensors changed what was predicted. Its size follows the weights of the \
+     training loss.",
+];
 /// Columns of the words after the bars.
 const WORDS: u16 = 9;
 const LEGENDS: [&str; 2] = ["█ mean: overruled  ░ spread: vague", "█ mean ░ spread"];
@@ -100,6 +108,21 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             text(buf, pane, BAR + room + 1, row, term.word, dim());
         }
     }
+    explain(buf, rows(pane, 2 + terms.len() as u16).1);
+}
+
+/// Says what the parts mean, if all of it fits.
+fn explain(buf: &mut Buffer, pane: Rect) {
+    let needed: usize = WORDS_BELOW
+        .iter()
+        .map(|line| wrapped(line, usize::from(pane.width.max(1))).len())
+        .sum();
+    if needed > usize::from(pane.height) {
+        return;
+    }
+    WORDS_BELOW
+        .iter()
+        .fold(0, |row, line| paragraph(buf, pane, row, line, dim()));
 }
 
 fn terms(fusion: &FusionView, snapshot: &Snapshot) -> Vec<Term> {

@@ -5,9 +5,8 @@
 //! V         12.9   14.7   20.0
 //! H                 8.3   31.2▲
 //! P                       10.5
-//! conflict Q 61.0  42 dof, 95 %: 26.0–61.8
-//! within what 95 % of agreeing experts
-//! show                          σ 0.25
+//! Q 61.0  95 %: 26.0–61.8, 42 dof
+//! within 95 % of agreeing experts
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -34,7 +33,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let fusion = match &snapshot.fusion {
         Some(fusion) if snapshot.badge != Badge::NoProduct => fusion,
         _ => {
-            title(buf, pane, "pairs", "", focused);
+            title(buf, pane, name(snapshot), "", focused);
             empty::draw(buf, below_title(pane), snapshot);
             return;
         }
@@ -63,8 +62,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         distance(buf, pane, *pair, face.depth);
     }
     let below = rows(pane, experts.max(1) as u16).1;
-    let roomy = u16::from(below.height > 5);
-    let below = rows(below, roomy).1;
+    let below = rows(below, u16::from(below.height > 6)).1;
     match fusion.conflict {
         Some(reading) => conflict(buf, below, reading, snapshot, face),
         None => {
@@ -77,6 +75,13 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
                 dim(),
             );
         }
+    }
+}
+
+fn name(snapshot: &Snapshot) -> &'static str {
+    match snapshot.badge {
+        Badge::NoProduct => "no product",
+        _ => "pairs",
     }
 }
 
@@ -119,7 +124,8 @@ fn conflict(buf: &mut Buffer, pane: Rect, reading: Conflict, snapshot: &Snapshot
         None => format!("{} dof", reading.dof),
     };
     text(buf, pane, at + 1, 0, &bounds, dim());
-    let row = paragraph(buf, pane, 1, words(reading), Style::new());
+    let roomy = pane.height > 3;
+    let row = paragraph(buf, pane, 1, words(reading, roomy), Style::new());
     // The belief is sharpest just when it is wrong, so its σ stands beside Q.
     let sigma = snapshot.belief.as_ref().map_or(f32::NAN, |belief| {
         belief.sigma.iter().sum::<f32>() / belief.sigma.len().max(1) as f32
@@ -136,13 +142,16 @@ fn conflict(buf: &mut Buffer, pane: Rect, reading: Conflict, snapshot: &Snapshot
 }
 
 /// What the conflict says, in plain words.
-fn words(reading: Conflict) -> &'static str {
+fn words(reading: Conflict, roomy: bool) -> &'static str {
     if reading.bounds.is_none() {
-        return "no bound where an α is neither 0 nor 1";
+        return "no bounds: an α is neither 0 nor 1";
     }
-    match mark(reading.energy, reading.bounds) {
-        '▲' => "above what 95 % of agreeing experts show",
-        '▼' => "below what 95 % of agreeing experts show",
-        _ => "within what 95 % of agreeing experts show",
+    match (mark(reading.energy, reading.bounds), roomy) {
+        ('▲', true) => "above what 95 % of agreeing experts show: the product forces agreement",
+        ('▼', true) => "below what 95 % of agreeing experts show: they are too timid",
+        (_, true) => "within what 95 % of agreeing experts show",
+        ('▲', false) => "above 95 % of agreeing experts",
+        ('▼', false) => "below 95 % of agreeing experts",
+        (_, false) => "within 95 % of agreeing experts",
     }
 }

@@ -1,7 +1,8 @@
 //! Diagnostics over time, a row a quantity, on the timeline's axis: what is read at a step stands below its force.
 //!
 //! ```text
-//! pos    ░░░░▒▒▒▒▓▓▓▓▓▓▓▓▓▒▒▒▒▒▒▒▒▒▒           VHPD ↑
+//! pos    ░░░░▒▒▒▒▓▓▓▓▓▓▓▓▓▒▒▒▒▒▒▒▒▒▒
+//!        ████████████████████████████          VHPD ↑
 //! NIS V  ▂▁▃▂▄▃▂▁▂▅▆▲▲▇▅▃▂▁▁▂▂▃▂▁▂▁▂▃           14.1
 //! Q      ▂▂▃▂▂▃▄▄▅▆▇▇▆▅▄▄▃▃▃▂▂▂▃▂▂▂▁▂           61.0
 //! KL     ▁▁▁▂▂▂▃▃▃▄▅▅▅▄▃▃▂▂▂▁▁▁▁▁▁▁▁▁           2.10
@@ -28,7 +29,7 @@ use crate::tui::view::Pane;
 
 /// The fewest rows that show everything of so many experts, the prior among them.
 pub fn rows(experts: usize) -> u16 {
-    3 + experts.clamp(1, 8) as u16 - 1
+    4 + experts.clamp(1, 8) as u16 - 1
 }
 
 /// One quantity over time.
@@ -69,9 +70,6 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         rest = below;
         bars(buf, own, axis, curve, snapshot.cursor, face);
     }
-    if face.is_focused(Pane::Series) {
-        put(buf, pane, 0, 0, '▸', strong());
-    }
 }
 
 /// Rows of the shares, of each curve and of the gap before it, and how many curves there is room for.
@@ -88,10 +86,10 @@ impl Sizes {
         let count = curves as u16;
         let highest = if zoomed { 4 } else { 2 };
         let gap = u16::from(height >= 3 + 3 * count);
-        let row = (height.saturating_sub(1 + gap * count) / count.max(1)).clamp(1, highest);
+        let row = (height.saturating_sub(2 + gap * count) / count.max(1)).clamp(1, highest);
         let share = height
             .saturating_sub(count * (row + gap))
-            .clamp(1, 4)
+            .clamp(2, 4)
             .min(height);
         let shown = usize::from(height.saturating_sub(share) / (row + gap)).min(curves);
         Self {
@@ -151,7 +149,12 @@ fn stacks(
     snapshot: &Snapshot,
     face: &Face,
 ) {
-    text(buf, pane, 1, 0, "pos", dim());
+    let at = if face.is_focused(Pane::Series) {
+        text(buf, pane, 0, 0, "▸ ", strong())
+    } else {
+        0
+    };
+    text(buf, pane, at, 0, "pos", dim());
     for step in (0..axis.steps).step_by(axis.every) {
         let share = |of: &[f32]| of.get(step).copied().unwrap_or(f32::NAN);
         let shares: Vec<(Expert, f32)> = snapshot
@@ -172,14 +175,15 @@ fn bars(buf: &mut Buffer, pane: Rect, axis: Axis, row: &Row, cursor: usize, face
         return;
     }
     let floor = pane.height - 1;
-    text(buf, pane, 1, floor, &row.name, dim().patch(row.style));
+    text(buf, pane, 0, floor, &row.name, dim().patch(row.style));
     let finite = row.values.iter().copied().filter(|value| value.is_finite());
     let bound = |step: usize| (row.bounds)(step).map(|bounds| bounds.high);
     let highest = (0..axis.steps).filter_map(bound).fold(1e-6, f32::max);
     let most = finite.fold(highest, f32::max);
     // One row is full at the bound, so that the marks beyond it stand out; more rows hold the largest value.
     let of_bound = pane.height == 1 && highest > 1e-6;
-    let top = if of_bound { highest } else { most };
+    // An eighth stays free, which keeps the rows apart.
+    let top = if of_bound { highest } else { most } * 8.0 / 7.0;
     for step in (0..axis.steps).step_by(axis.every) {
         // Of steps that share a column the worst is drawn.
         let steps = step..(step + axis.every).min(row.values.len());
@@ -202,7 +206,11 @@ fn bars(buf: &mut Buffer, pane: Rect, axis: Axis, row: &Row, cursor: usize, face
             }
             let style = if above { strong() } else { dim() }.patch(row.style);
             if of_bound && value.is_finite() {
-                let fill = if above { '▲' } else { eighth(value / top) };
+                let fill = if above {
+                    '▲'
+                } else {
+                    eighth(value / top).max('▁')
+                };
                 put(buf, pane, at, 0, fill, style);
             } else if value.is_finite() {
                 column(buf, pane, at, value / top, style);

@@ -4,11 +4,10 @@
 //! 80×24                              120×40
 //! status                             status
 //! experts experts experts experts    experts experts experts experts
-//! pairs             dims             dims              pairs
-//! timeline                                             KL
-//! series                             timeline
-//! message                            series
-//!                                    message
+//! pairs             dims             pairs       dims        KL
+//! timeline                           timeline
+//! series                             series
+//! message                            message
 //! ```
 //! Timeline and series share their axis, so that what is read at a step stands below its contact force.
 
@@ -18,11 +17,13 @@ use super::{Layout, Shape, columns, experts_rows, rows};
 use crate::tui::fuse::series;
 use crate::tui::view::Pane;
 
-/// Rows of the pairs: who, three of distances, the conflict and what it means.
-const PAIRS_ROWS: u16 = 7;
-/// Columns of the pairs, and of sixteen stacks of three columns.
+/// Rows of the pairs: who, three of distances, the conflict and what it means; and the most that are of use.
+const PAIRS_ROWS: u16 = 6;
+const MOST: u16 = 13;
+/// Columns of the pairs, of sixteen stacks of two columns, and of KL terms with bars worth a look.
 const PAIRS: u16 = 37;
-const DIMS: u16 = 56;
+const DIMS: u16 = 39;
+const DIVERGENCE: u16 = 36;
 
 impl Layout {
     pub(super) fn fuse(&mut self, body: Rect, shape: Shape) {
@@ -33,15 +34,21 @@ impl Layout {
         self.put(Pane::Experts, experts);
         let rest = rows(rest, roomy).1;
 
+        if !shape.product {
+            // Nothing to take apart: why, in the place of all readings.
+            let above = self.put_timeline(rest, (rest.height / 3).min(3));
+            self.put(Pane::Pairs, above);
+            return;
+        }
         let timeline = if rest.height >= 6 { 3 } else { 2 };
         let room = rest.height.saturating_sub(timeline + roomy);
         let least = series::rows(shape.experts) + PAIRS_ROWS;
         let middle = match room.checked_sub(least) {
-            Some(spare) if body.width >= 70 => PAIRS_ROWS + spare * 3 / 5,
+            Some(spare) if body.width >= 70 => (PAIRS_ROWS + spare * 3 / 5).min(MOST),
             _ => 0,
         };
         let (middle, below) = rows(rest, middle);
-        self.middle(middle, shape);
+        self.middle(middle);
         let below = if middle.is_empty() {
             below
         } else {
@@ -52,19 +59,16 @@ impl Layout {
         self.put(Pane::Series, series);
     }
 
-    fn middle(&mut self, pane: Rect, shape: Shape) {
-        if !shape.product {
-            self.put(Pane::Pairs, pane);
-        } else if pane.width >= DIMS + 50 && pane.height >= 2 * PAIRS_ROWS {
-            let (dims, right) = columns(pane, DIMS, 3);
-            let (pairs, divergence) = rows(right, PAIRS_ROWS);
-            self.put(Pane::Dims, dims);
-            self.put(Pane::Pairs, pairs);
-            self.put(Pane::Divergence, rows(divergence, 1).1);
-        } else {
-            let (pairs, dims) = columns(pane, PAIRS, 2);
-            self.put(Pane::Pairs, pairs);
-            self.put(Pane::Dims, dims);
+    fn middle(&mut self, pane: Rect) {
+        let (pairs, rest) = columns(pane, PAIRS, 2);
+        self.put(Pane::Pairs, pairs);
+        match rest.width.checked_sub(DIMS + 3 + DIVERGENCE) {
+            Some(spare) => {
+                let (dims, divergence) = columns(rest, DIMS + spare / 2, 3);
+                self.put(Pane::Dims, dims);
+                self.put(Pane::Divergence, divergence);
+            }
+            None => self.put(Pane::Dims, rest),
         }
     }
 }

@@ -125,6 +125,12 @@ fn errors(buf: &mut Buffer, pane: Rect, first: u16, snapshot: &Snapshot) {
         line("  no R_p", &shown(now(&series.nees_bare)), "probe exact");
     }
     if let Some(edit) = &snapshot.control_edit {
-        sentence(buf, pane, row + 1, &edited::words(edit, if pane.height < 20 { 0 } else { u16::MAX }), strong());
+        sentence(
+            buf,
+            pane,
+            row + 1,
+            &edited::words(edit, if pane.height < 20 { 0 } else { u16::MAX }),
+            strong(),
+        );
     }
 }

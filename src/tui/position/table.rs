@@ -18,7 +18,7 @@ use super::super::braille::{Canvas, Stroke};
 use super::super::face::Face;
 use super::super::paint::{below_title, put, text, title};
 use super::super::plane::{Extent, Plane};
-use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
@@ -69,7 +69,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let recorded = dots(&view, &position.recorded_controls);
     canvas.path(&recorded, Stroke::Sparse, dim());
     if let Some(other) = other {
-        let ink = face.depth.ink(OTHER);
+        let ink = face.depth.ink(SECOND);
         canvas.path(&dots(&view, &other.prediction), Stroke::Sparse, ink);
         canvas.path(&dots(&view, &other.belief), Stroke::DashDot, ink);
     }
@@ -116,7 +116,7 @@ fn other_marks(
     cursor: usize,
     face: &Face,
 ) {
-    let ink = strong().patch(face.depth.ink(OTHER));
+    let ink = strong().patch(face.depth.ink(SECOND));
     for (path, symbol) in [(&other.prediction, '◇'), (&other.belief, '○')] {
         if let Some(now) = at_step(path, cursor)
             && let Some((column, row)) = view.cell(view.dot([now.x, now.y]))
@@ -139,7 +139,7 @@ struct Said {
 impl Said {
     fn legend(&self, buf: &mut Buffer, inner: Rect, rows: u16, snapshot: &Snapshot, face: &Face) {
         let prediction = face.depth.ink(PREDICTION);
-        let other = face.depth.ink(OTHER);
+        let other = face.depth.ink(SECOND);
         let masses = if self.cut {
             format!("{}, wider than this", masses())
         } else {

@@ -17,7 +17,7 @@ use super::super::face::Face;
 use super::super::paint::{below_title, text, title, width};
 use super::super::plot::Plot;
 use super::super::scale::Scale;
-use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{Entry, legend_below};
 use super::{ahead, cursor_ahead, labels};
@@ -121,7 +121,7 @@ fn names(snapshot: &Snapshot, columns: u16) -> Vec<String> {
 /// The strokes are those of the position plane.
 fn lines<'a>(snapshot: &'a Snapshot, face: &Face) -> Vec<Line<'a>> {
     let prediction = face.depth.ink(PREDICTION);
-    let other = face.depth.ink(OTHER);
+    let other = face.depth.ink(SECOND);
     let line = |(glyph, mark), stroke, style, of, value| Line {
         glyph,
         mark,

@@ -22,7 +22,7 @@ fn shown(name: &str, snapshot: &Snapshot, face: &Face) {
 /// Two models, edited controls, samples, damaged input and a selection.
 fn everything(cursor: usize, steps: usize) -> Snapshot {
     let mut snapshot = fixture::snapshot(cursor, steps);
-    snapshot.other = Some(fixture::other(cursor, steps));
+    fixture::compare(&mut snapshot);
     snapshot.sampling.shown = true;
     snapshot.control_edit = Some(ControlEdit {
         from: 5,
