@@ -17,6 +17,20 @@ pub enum Modality {
     Proprio,
 }
 
+impl Modality {
+    /// All of them, in the order in which faces list them.
+    pub const ALL: [Self; 3] = [Self::Vision, Self::Haptic, Self::Proprio];
+
+    /// Its name in help, messages and state strings.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Vision => "vision",
+            Self::Haptic => "haptic",
+            Self::Proprio => "proprio",
+        }
+    }
+}
+
 /// One Gaussian factor over the latent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]

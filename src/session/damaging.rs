@@ -42,7 +42,7 @@ impl Session {
         modality: Modality,
         corruption: Option<Corruption>,
     ) -> Result<String, Refusal> {
-        let name = modality_name(modality);
+        let name = modality.name();
         let Some(corruption) = corruption else {
             self.settings.corruptions.remove(&modality);
             return Ok(format!("{name} input undamaged"));
@@ -108,30 +108,27 @@ impl Session {
 impl ControlEdit {
     /// `controls from step 6: turned 30°, × 0.5, mirrored`.
     pub fn words(&self) -> String {
+        format!("controls from step {}: {}", self.from + 1, self.what())
+    }
+
+    /// `turned 30°, × 0.5, mirrored`.
+    pub fn what(&self) -> String {
+        if self.scale == 0.0 {
+            return "stopped".to_owned();
+        }
         let mut parts = Vec::new();
         if self.rotate_deg != 0.0 {
             parts.push(format!("turned {}°", self.rotate_deg));
         }
-        if self.scale == 0.0 {
-            parts.push("stopped".to_owned());
-        } else if (self.scale - 1.0).abs() > f32::EPSILON {
+        if (self.scale - 1.0).abs() > f32::EPSILON {
             parts.push(format!("× {}", self.scale));
         }
         if self.mirror {
             parts.push("mirrored".to_owned());
         }
         if parts.is_empty() {
-            parts.push("as recorded".to_owned());
+            return "as recorded".to_owned();
         }
-        format!("controls from step {}: {}", self.from + 1, parts.join(", "))
-    }
-}
-
-/// As it is called in messages and state strings.
-fn modality_name(modality: Modality) -> &'static str {
-    match modality {
-        Modality::Vision => "vision",
-        Modality::Haptic => "haptic",
-        Modality::Proprio => "proprio",
+        parts.join(", ")
     }
 }

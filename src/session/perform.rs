@@ -102,6 +102,9 @@ impl Session {
             Command::SetSamples(count) => self.change(|session| session.set_samples(count)),
             Command::SetSeed(seed) => self.change(|session| {
                 session.settings.sampling.seed = seed;
+                for corruption in session.settings.corruptions.values_mut() {
+                    corruption.seed = seed;
+                }
                 Ok(format!("seed {seed}"))
             }),
             Command::CompareWith(model) => self.compare_with(model),

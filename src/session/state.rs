@@ -39,7 +39,7 @@ use crate::measure::corruption::Corruption;
 use crate::measure::failure::Order;
 use crate::modality::Modality;
 use escape::{escape, unescape};
-use names::{LOOPINGS, ORDERS, SCOPES, count, name_of, one_of};
+use names::{LOOPINGS, SCOPES, count, name_of, one_of};
 
 /// The version written, and the only one that can be read.
 const VERSION: &str = "1";
@@ -148,7 +148,7 @@ impl State {
             }
             "marks" => self.marks = steps::marks(value)?,
             "select" => self.selection = Some(steps::selection(value)?),
-            "rank" => self.order = one_of(value, &ORDERS)?,
+            "rank" => self.order = names::order(value)?,
             _ => self.unknown.push((key.to_owned(), value.to_owned())),
         }
         Ok(())
@@ -190,7 +190,7 @@ impl fmt::Display for State {
             ("select", self.selection.map(steps::selection_text)),
             (
                 "rank",
-                unless(self.order == Order::default(), name_of(self.order, &ORDERS)),
+                unless(self.order == Order::default(), self.order.name().to_owned()),
             ),
         ];
         let known = pairs

@@ -1,5 +1,7 @@
 //! Keys, clicks and drags in; commands to the session and changes of the face out. Knows no terminal.
 
+mod list;
+
 use std::time::Duration;
 
 use ratatui::layout::{Position, Rect, Size};
@@ -129,7 +131,7 @@ impl App {
     }
 
     fn take(&mut self, key: &Key, snapshot: &Snapshot) -> Flow {
-        if self.choose_set(key, snapshot) {
+        if self.list_takes(key, snapshot) || self.choose_set(key, snapshot) {
             return Flow::Go;
         }
         let flow = match self.input.press(key, snapshot) {
@@ -197,7 +199,7 @@ impl App {
                     face.open(view);
                 }
             }
-            FaceCommand::Episodes => self.not_yet("the list of episodes"),
+            FaceCommand::Episodes => self.toggle_episodes(),
             FaceCommand::Difference => face.compare = face.compare.difference(),
             FaceCommand::Blink => {
                 self.blinked = Duration::ZERO;
@@ -215,16 +217,9 @@ impl App {
         Flow::Go
     }
 
-    fn not_yet(&mut self, what: &str) {
-        self.session.say(Message {
-            error: true,
-            text: format!("the terminal does not draw {what} yet"),
-        });
-    }
-
     /// Takes what the mouse did at a cell of the screen.
     pub fn point(&mut self, pointer: Pointer, at: Position) {
-        if self.face.help.is_some() {
+        if self.face.help.is_some() || self.face.episodes.is_some() {
             return;
         }
         let snapshot = self.session.snapshot();

@@ -42,8 +42,8 @@ struct Places {
 impl Places {
     fn of(columns: u16) -> Self {
         let spare = columns.saturating_sub(REST + ID + SPARK);
-        let id = ID + (spare / 2).min(20);
-        let spark_columns = SPARK + (spare - (id - ID)).min(32);
+        let id = ID + (spare / 3).min(20);
+        let spark_columns = SPARK + (spare - (id - ID)).min(39);
         // Mark and number, name, split, steps.
         let spark = 7 + id + 6 + 6 + 2;
         let mut at = spark + spark_columns;
@@ -271,9 +271,17 @@ fn spark(buf: &mut Buffer, line: Rect, score: &EpisodeScore, places: &Places) {
         .filter(|error| error.is_finite())
         .fold(1e-6, f32::max);
     let columns = usize::from(places.spark_columns - 1);
-    let shown = columns.min(errors.len());
+    if errors.is_empty() {
+        return;
+    }
+    // A whole number of columns a step, or of some columns the worst of their steps.
+    let shown = match columns / errors.len() {
+        0 => columns,
+        each => each * errors.len(),
+    };
     for column in 0..shown {
-        let steps = column * errors.len() / shown..(column + 1) * errors.len() / shown;
+        let first = column * errors.len() / shown;
+        let steps = first..((column + 1) * errors.len() / shown).max(first + 1);
         let worst = errors[steps].iter().copied().fold(f32::NAN, f32::max);
         if worst.is_finite() {
             // Never a full cell, or the lines of the list would run into one another.

@@ -137,37 +137,27 @@ fn position(cursor: usize, steps: usize) -> PositionView {
     }
 }
 
-/// A second model at the same moment, a little worse at everything.
-pub fn other(cursor: usize, steps: usize) -> Option<Arc<OtherView>> {
-    let own = snapshot(cursor, steps);
-    let worse = |path: &[Option<Estimate>]| {
-        let moved = |estimate: &Option<Estimate>| {
-            estimate.map(|estimate| Estimate {
-                x: estimate.x - 0.006,
-                y: estimate.y + 0.009,
-                ..estimate
-            })
-        };
-        Arc::new(path.iter().map(moved).collect::<Vec<_>>())
+/// The same a little to the upper left.
+fn beside(position: PositionView) -> PositionView {
+    let moved = |estimate: &Option<Estimate>| {
+        estimate.map(|estimate| Estimate {
+            x: estimate.x - 0.006,
+            y: estimate.y + 0.009,
+            ..estimate
+        })
     };
-    let psnr = own.psnr_db.iter().map(|psnr| StepPsnr {
+    PositionView {
+        belief: Arc::new(position.belief.iter().map(moved).collect()),
+        prediction: Arc::new(position.prediction.iter().map(moved).collect()),
+        ..position
+    }
+}
+
+fn worse(psnr: &StepPsnr) -> StepPsnr {
+    StepPsnr {
         belief: psnr.belief.map(|db| db - 2.0),
         prediction: psnr.prediction.map(|db| db - 3.5),
-    });
-    let position = own.position.map(|position| PositionView {
-        belief: worse(&position.belief),
-        prediction: worse(&position.prediction),
-        ..position
-    });
-    Some(Arc::new(OtherView {
-        model: 0,
-        frames: own.frames,
-        difference: None,
-        strip: own.strip,
-        position,
-        psnr_db: Arc::new(psnr.collect()),
-        fault: None,
-    }))
+    }
 }
 
 /// Adds a second model whose prediction lags behind.
@@ -196,10 +186,25 @@ pub fn compare(snapshot: &mut Snapshot) {
             ..snapshot.frames.clone()
         },
         strip: Arc::clone(&snapshot.strip),
-        position: snapshot.position.clone(),
-        psnr_db: Arc::clone(&snapshot.psnr_db),
+        position: snapshot.position.clone().map(beside),
+        psnr_db: Arc::new(snapshot.psnr_db.iter().map(worse).collect()),
         fault: None,
     }));
+}
+
+fn episode(steps: usize) -> EpisodeView {
+    EpisodeView {
+        id: "push-00002".to_owned(),
+        split: Some(Split::Test),
+        source: None,
+        secs: (0..steps).map(|t| t as f64 / 3.75).collect(),
+        force_newtons: (0..steps)
+            .map(|t| if t < 4 { 0.05 } else { 1.0 + 2.0 * noise(t) })
+            .collect(),
+        flags: Vec::new(),
+        flagged_steps: Vec::new(),
+        missing: Vec::new(),
+    }
 }
 
 /// The session at a step of an episode of so many.
@@ -237,18 +242,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
             trained_sets: vec![ExpertSet::full(3)],
         })],
         model: 0,
-        episode: Some(Arc::new(EpisodeView {
-            id: "push-00002".to_owned(),
-            split: Some(Split::Test),
-            source: None,
-            secs: (0..steps).map(|t| t as f64 / 3.75).collect(),
-            force_newtons: (0..steps)
-                .map(|t| if t < 4 { 0.05 } else { 1.0 + 2.0 * noise(t) })
-                .collect(),
-            flags: Vec::new(),
-            flagged_steps: Vec::new(),
-            missing: Vec::new(),
-        })),
+        episode: Some(Arc::new(episode(steps))),
         episode_index: 2,
         episode_count: 24,
         cursor,

@@ -178,3 +178,16 @@ fn marks(
         mark([estimate.x, estimate.y], '●', strong());
     }
 }
+
+/// The cells of truth, prediction and belief at the cursor.
+fn marked(view: &Plane, position: &PositionView, cursor: usize) -> Vec<(u16, u16)> {
+    let truth = position.truth.get(cursor).map(|pose| [pose.x, pose.y]);
+    let estimates = [&position.prediction, &position.belief].map(|path| {
+        let now = at_step(path, cursor)?;
+        Some([now.x, now.y])
+    });
+    let points = [truth].into_iter().chain(estimates).flatten();
+    points
+        .filter_map(|point| view.cell(view.dot(point)))
+        .collect()
+}

@@ -81,7 +81,12 @@ impl Scale {
     }
 
     fn log_ticks(self, most: usize) -> Vec<(f32, String)> {
-        let steps: &[f32] = if most > 4 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let is_short = self.high / self.low < 50.0;
+        let steps: &[f32] = if most > 4 || is_short {
+            &[1.0, 2.0, 5.0]
+        } else {
+            &[1.0]
+        };
         let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
         let tick = |value: f32| {
             let decimals = (-value.log10().floor()).clamp(0.0, 6.0) as usize;
@@ -128,7 +133,8 @@ mod tests {
             labels(Scale::log(1.0, 60.0), 6),
             ["1", "2", "5", "10", "20", "50"]
         );
-        assert!(labels(Scale::linear(0.0, f32::NAN), 4).is_empty());
+        assert!(labels(Scale::linear(f32::NAN, 1.0), 4).is_empty());
+        assert_eq!(labels(Scale::linear(10.0, 30.0), 1), ["10", "30"]);
     }
 
     #[test]

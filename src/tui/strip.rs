@@ -51,13 +51,17 @@ struct Grid {
     side: u16,
     /// Rows from one frame to the one below.
     pitch: u16,
+    /// The first step, and the one after the last.
+    from: usize,
+    until: usize,
     /// k.
     every: usize,
 }
 
 impl Grid {
-    fn of(pane: (u16, u16), steps: usize, rows: &'static [Row], gap: u16) -> Self {
+    fn of(pane: (u16, u16), (from, until): (usize, usize), rows: &'static [Row], gap: u16) -> Self {
         let (width, height) = pane;
+        let steps = until.saturating_sub(from);
         let count = rows.len() as u16;
         let tallest = height.saturating_sub(1 + gap * (count - 1)) / count * 2;
         let room = usize::from(width.saturating_sub(LABELS));
@@ -72,12 +76,14 @@ impl Grid {
             rows,
             side,
             pitch: side.div_ceil(2) + gap,
+            from,
+            until,
             every: every.max(1),
         }
     }
 
     /// The predict view's: four rows if they can be read, else three.
-    fn with_error(pane: (u16, u16), steps: usize) -> Self {
+    fn with_error(pane: (u16, u16), steps: (usize, usize)) -> Self {
         let four = Self::of(pane, steps, FOUR, 0);
         if four.side >= SMALLEST {
             four
@@ -89,7 +95,7 @@ impl Grid {
 
 /// Rows that are of use out of so many, without the error.
 pub fn rows(width: u16, height: u16, steps: usize) -> u16 {
-    let grid = Grid::of((width, height), steps, THREE, 1);
+    let grid = Grid::of((width, height), (0, steps), THREE, 1);
     if grid.side == 0 { 0 } else { grid.pitch * 3 }
 }
 
@@ -98,13 +104,20 @@ fn steps(snapshot: &Snapshot) -> usize {
     episode.map_or(0, |episode| episode.secs.len())
 }
 
+/// The steps of the rollout, and half as many before it.
+fn rollout(snapshot: &Snapshot) -> (usize, usize) {
+    let from = snapshot.start.saturating_sub(snapshot.horizon / 2);
+    let until = (snapshot.start + snapshot.horizon + 1).min(steps(snapshot));
+    (from.min(until), until)
+}
+
 /// Draws truth, belief and prediction; in the predict view the error, too.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if face.view == View::Predict {
         with_error(buf, pane, snapshot, face);
         return;
     }
-    let grid = Grid::of((pane.width, pane.height), steps(snapshot), THREE, 1);
+    let grid = Grid::of((pane.width, pane.height), (0, steps(snapshot)), THREE, 1);
     grid.draw(buf, pane, snapshot, face, false);
 }
 
@@ -116,18 +129,24 @@ fn with_error(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         height: pane.height - said,
         ..pane
     };
-    let grid = Grid::with_error((frames.width, frames.height), steps(snapshot));
+    let grid = Grid::with_error((frames.width, frames.height), rollout(snapshot));
     grid.draw(buf, frames, snapshot, face, focused);
     if let Some(edit) = snapshot.control_edit.as_ref().filter(|_| said > 0) {
         let row = (1 + grid.pitch * grid.rows.len() as u16).min(frames.height);
-        text(buf, pane, 0, row, &edited::words(edit), strong());
+        text(
+            buf,
+            pane,
+            0,
+            row,
+            &edited::words(edit, pane.width),
+            strong(),
+        );
     }
 }
 
 impl Grid {
     fn draw(self, buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face, focused: bool) {
-        let steps = steps(snapshot);
-        if steps == 0 || self.side == 0 || pane.width <= LABELS {
+        if self.from >= self.until || self.side == 0 || pane.width <= LABELS {
             return;
         }
         let mark = if focused { "▸ " } else { "" };
@@ -136,7 +155,7 @@ impl Grid {
         for (i, row) in self.rows.iter().enumerate() {
             row.label(buf, pane, 1 + i as u16 * self.pitch, (self.pitch, face));
         }
-        for (place, step) in (0..steps).step_by(self.every).enumerate() {
+        for (place, step) in (self.from..self.until).step_by(self.every).enumerate() {
             let at = LABELS + place as u16 * (self.side + 1);
             self.heading(buf, pane, at, step, snapshot);
             if step <= snapshot.start && step + self.every > snapshot.start {
@@ -263,8 +282,8 @@ mod tests {
 
     #[test]
     fn a_low_pane_lets_belief_and_prediction_share_a_row() {
-        assert_eq!(Grid::with_error((118, 25), 16).rows, FOUR);
-        let low = Grid::with_error((78, 13), 16);
+        assert_eq!(Grid::with_error((118, 25), (0, 16)).rows, FOUR);
+        let low = Grid::with_error((78, 13), (0, 16));
         assert_eq!((low.rows, low.side, low.every), (SHARED, 8, 3));
     }
 }

@@ -2,6 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+mod rollout;
+
 use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Duration;
@@ -210,21 +212,6 @@ fn the_bench() {
         for size in [SMALL, LARGE] {
             let name = format!("{name}_{}x{}", size.0, size.1);
             insta::assert_snapshot!(name, described(&screen(&snapshot, &face, size)));
-        }
-    }
-}
-
-/// Writes the pictures for `docs/picture.py`: `cargo test --release --lib -- --ignored dump`.
-#[test]
-#[ignore = "writes files, checks nothing"]
-fn dump() {
-    let folder = std::env::temp_dir().join("poescope_pictures");
-    std::fs::create_dir_all(&folder).unwrap();
-    for (name, (snapshot, face)) in bench_pictures() {
-        for size in [SMALL, LARGE, (40, 12), (100, 30), (200, 60)] {
-            let text = to_text(&screen(&snapshot, &face, size), face.depth != Depth::Plain);
-            let file = format!("{name}_{}x{}.ansi", size.0, size.1);
-            std::fs::write(folder.join(file), text).unwrap();
         }
     }
 }

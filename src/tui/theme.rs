@@ -12,7 +12,7 @@ pub type Rgb = (u8, u8, u8);
 /// The prediction's colour: Okabe and Ito's sky blue, which no modality has.
 pub const PREDICTION: Rgb = (0x56, 0xB4, 0xE9);
 /// The second model's colour: Okabe and Ito's reddish purple. Its lines have strokes of their own as well.
-pub const OTHER: Rgb = (0xCC, 0x79, 0xA7);
+pub const SECOND: Rgb = (0xCC, 0x79, 0xA7);
 /// What asks for attention: Okabe and Ito's vermillion.
 pub const WARNING: Rgb = (0xD5, 0x5E, 0x00);
 

@@ -1,7 +1,7 @@
 //! Results that can be made again, as files of the user's cache folder.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use crate::session::survey::Cache;
 
@@ -18,11 +18,6 @@ impl Folder {
             .filter(|path| path.is_absolute())
             .or_else(|| set("HOME").map(|home| PathBuf::from(home).join(".cache")));
         base.map(|base| Self(base.join("poescope")))
-    }
-
-    /// This folder; made when something is stored.
-    pub fn at(path: &Path) -> Self {
-        Self(path.to_owned())
     }
 }
 
@@ -52,7 +47,7 @@ mod tests {
     #[test]
     fn what_is_stored_comes_back_and_nothing_else() {
         let folder = tempfile::tempdir().expect("a folder");
-        let cache = Folder::at(&folder.path().join("new"));
+        let cache = Folder(folder.path().join("new"));
         assert_eq!(cache.load("a.json"), None);
         cache.store("a.json", b"1");
         cache.store("a.json", b"22");

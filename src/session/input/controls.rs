@@ -39,7 +39,7 @@ impl Input {
         format!(
             "controls from step {}: {} | - = turn, ↑ ↓ speed, m mirror, . stop, r recorded, Esc ends",
             edit.from + 1,
-            words(&edit)
+            edit.what()
         )
     }
 
@@ -49,24 +49,4 @@ impl Input {
             .control_edit
             .unwrap_or(ControlEdit::from(self.from))
     }
-}
-
-fn words(edit: &ControlEdit) -> String {
-    let mut words = Vec::new();
-    if edit.scale == 0.0 {
-        return "stopped".to_owned();
-    }
-    if edit.mirror {
-        words.push("mirrored".to_owned());
-    }
-    if edit.rotate_deg != 0.0 {
-        words.push(format!("turned {}°", edit.rotate_deg));
-    }
-    if (edit.scale - 1.0).abs() >= f32::EPSILON {
-        words.push(format!("{} times as fast", edit.scale));
-    }
-    if words.is_empty() {
-        words.push("as recorded".to_owned());
-    }
-    words.join(", ")
 }

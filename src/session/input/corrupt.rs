@@ -12,7 +12,6 @@ use crate::session::command::Command;
 use crate::session::keys::Key;
 use crate::session::prompt::{aimed, kinds};
 use crate::session::snapshot::Snapshot;
-use crate::session::state::names::{MODALITIES, name_of};
 
 /// How far an arrow moves the patch, in parts of the frame.
 const ARROW: f32 = 0.125;
@@ -71,7 +70,7 @@ impl Input {
         let Some(modality) = self.damaged(snapshot) else {
             return "whose input? a digit".to_owned();
         };
-        let name = name_of(modality, &MODALITIES);
+        let name = modality.name();
         let another = if self.choices(snapshot).len() > 1 {
             "Tab or a digit another"
         } else {

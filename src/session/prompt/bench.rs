@@ -1,12 +1,12 @@
 //! Lines that damage inputs, edit controls and choose experts.
 
 use super::{Choice, split};
-use crate::measure::corruption::{Corruption, Damage};
+use crate::measure::corruption::{Corruption, Damage, applies};
 use crate::modality::Modality;
 use crate::session::command::Command;
 use crate::session::settings::{ControlEdit, SCALES};
 use crate::session::snapshot::Snapshot;
-use crate::session::state::names::{MODALITIES, name_of, one_of};
+use crate::session::state::names;
 use crate::session::switches::Reach;
 
 /// Severity of a damage that says nothing else.
@@ -28,7 +28,7 @@ pub(in crate::session) fn aimed(damage: Damage, snapshot: &Snapshot) -> Corrupti
 /// `vision noise`, `haptic hold 0.3`, `proprio none`.
 pub(super) fn corrupt(text: &str, snapshot: &Snapshot) -> Option<Command> {
     let (modality, rest) = split(text);
-    let modality = one_of(modality, &MODALITIES).ok()?;
+    let modality = names::modality(modality).ok()?;
     let (kind, severity) = split(rest);
     if kind == "none" {
         return severity.is_empty().then_some(Command::Corrupt {
@@ -59,7 +59,7 @@ pub(super) fn corruptions(snapshot: &Snapshot) -> Vec<Choice> {
     modalities.sort_unstable();
     modalities.dedup();
     let all = modalities.into_iter().flat_map(|modality| {
-        let name = name_of(modality, &MODALITIES);
+        let name = modality.name();
         let kinds = kinds(modality).map(Damage::name).chain(["none"]);
         kinds
             .map(|kind| (format!("{name} {kind}"), ""))
@@ -70,7 +70,7 @@ pub(super) fn corruptions(snapshot: &Snapshot) -> Vec<Choice> {
 
 /// How a modality can be damaged; only a picture has something to lie in front of.
 pub(in crate::session) fn kinds(modality: Modality) -> impl Iterator<Item = Damage> {
-    let fits = move |damage: &Damage| *damage != Damage::Occlude || modality == Modality::Vision;
+    let fits = move |damage: &Damage| applies(*damage, modality);
     Damage::ALL.into_iter().filter(fits)
 }
 

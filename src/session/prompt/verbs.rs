@@ -2,6 +2,7 @@
 
 use super::bench::{controls, corrupt, corruptions, set};
 use super::{Choice, Verb, split, usage};
+use crate::measure::failure::Order;
 use crate::session::command::Command;
 use crate::session::input::Action;
 use crate::session::keymap::{FaceCommand, VIEWS};
@@ -9,7 +10,6 @@ use crate::session::restore::{model_key, model_named};
 use crate::session::settings::SAMPLES;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::table::Column;
-use crate::session::state::names::ORDERS;
 
 /// All of them, in the order of the palette.
 pub(in crate::session) static VERBS: &[Verb] = &[
@@ -155,10 +155,10 @@ pub(in crate::session) static VERBS: &[Verb] = &[
         arguments: "ORDER",
         help: "what makes a failure",
         keys: "o",
-        choices: |_| ORDERS.map(|(name, _)| whole(name)).to_vec(),
+        choices: |_| Order::ALL.map(|order| whole(order.name())).to_vec(),
         read: |rest, _| {
-            let order = ORDERS.into_iter().find(|(name, _)| *name == rest);
-            session(order.map(|(_, order)| Command::RankBy(order)))
+            let order = Order::from_name(rest);
+            session(order.map(Command::RankBy))
         },
     },
     Verb {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use super::names::{MODALITIES, name_of, one_of};
+use super::names;
 use super::reach;
 use crate::measure::corruption::{Corruption, Damage};
 use crate::modality::Modality;
@@ -19,7 +19,7 @@ pub fn text(corruptions: &BTreeMap<Modality, Corruption>) -> String {
         };
         format!(
             "{}:{}:{}{}{patch}",
-            name_of(modality, &MODALITIES),
+            modality.name(),
             corruption.damage.name(),
             corruption.severity,
             reach::text(Reach { from, until })
@@ -44,7 +44,7 @@ pub fn read(text: &str) -> Result<BTreeMap<Modality, Corruption>, String> {
 
 fn entry(text: &str) -> Option<(Modality, Corruption)> {
     let (modality, rest) = text.split_once(':')?;
-    let modality = one_of(modality, &MODALITIES).ok()?;
+    let modality = names::modality(modality).ok()?;
     let (damage, rest) = rest.split_once(':')?;
     let damage = Damage::ALL.into_iter().find(|d| d.name() == damage)?;
     let (rest, patch) = match rest.split_once(':') {

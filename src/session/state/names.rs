@@ -14,19 +14,19 @@ pub const LOOPINGS: [(&str, Looping); 3] = [
     ("all", Looping::All),
     ("selection", Looping::Selection),
 ];
-pub const MODALITIES: [(&str, Modality); 3] = [
-    ("vision", Modality::Vision),
-    ("haptic", Modality::Haptic),
-    ("proprio", Modality::Proprio),
-];
-pub const ORDERS: [(&str, Order); 6] = [
-    ("error", Order::Error),
-    ("distance", Order::Distance),
-    ("nees", Order::Nees),
-    ("conflict", Order::Conflict),
-    ("gain", Order::Gain),
-    ("escape", Order::Escape),
-];
+
+/// The modality of that name; else a complaint that lists the names there are.
+pub fn modality(text: &str) -> Result<Modality, String> {
+    one_of(
+        text,
+        &Modality::ALL.map(|modality| (modality.name(), modality)),
+    )
+}
+
+/// The order of that name; else a complaint that lists the names there are.
+pub fn order(text: &str) -> Result<Order, String> {
+    one_of(text, &Order::ALL.map(|order| (order.name(), order)))
+}
 
 /// What a name stands for; else a complaint that lists the names there are.
 pub fn one_of<T: Copy>(text: &str, table: &[(&str, T)]) -> Result<T, String> {

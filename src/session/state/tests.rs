@@ -140,7 +140,7 @@ fn any_corruptions() -> impl Strategy<Value = BTreeMap<Modality, Corruption>> {
             Option<usize>,
             [f32; 2],
         )| {
-            let modality = names::MODALITIES[modality].1;
+            let modality = crate::modality::Modality::ALL[modality];
             let (damage, patch) = match Damage::ALL[damage] {
                 Damage::Occlude if modality == Modality::Vision => (Damage::Occlude, patch),
                 Damage::Occlude => (Damage::Bias, [0.5; 2]),
@@ -201,7 +201,7 @@ fn any_bench() -> impl Strategy<Value = State> {
                         .map(|(first, more)| (first, more.map(|more| first + more))),
                     sampling: Sampling { shown, count, seed },
                     compare: rest.0,
-                    order: ORDERS[rest.1].1,
+                    order: Order::ALL[rest.1],
                     looping: Some(LOOPINGS[rest.2].1),
                     ..State::default()
                 }

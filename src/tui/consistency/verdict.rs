@@ -14,8 +14,8 @@ use crate::measure::calibration::{Calibration, CoveragePoint};
 use crate::session::snapshot::Snapshot;
 
 /// Where the two columns of numbers end.
-const FILTERED: u16 = 24;
-const PREDICTED: u16 = 37;
+const FILTERED: u16 = 23;
+const PREDICTED: u16 = 35;
 
 /// Draws the sentences, the most important first.
 pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {

@@ -38,6 +38,8 @@ pub enum Asked {
     Open(usize),
     /// To close the list.
     Close,
+    /// What the key always does.
+    Usual,
 }
 
 impl List {
@@ -78,6 +80,7 @@ impl List {
             "o" => return Asked::Command(Command::CycleFailureOrder),
             "<" => return Self::sort(table, Self::neighbour(table.sort, -1)),
             ">" => return Self::sort(table, Self::neighbour(table.sort, 1)),
+            "<c-c>" | "q" | "?" | "<f1>" => return Asked::Usual,
             _ => {
                 let column = digit.and_then(|digit| COLUMNS.get((digit as usize).checked_sub(1)?));
                 if let Some(&column) = column {
@@ -100,6 +103,7 @@ impl List {
     fn typed(&mut self, key: &Key, table: &TableView) -> Asked {
         let mut filter = table.filter.clone();
         match key.name() {
+            "<c-c>" => return Asked::Usual,
             "<enter>" => {
                 self.is_typing = false;
                 return Asked::Nothing;

@@ -20,7 +20,7 @@ use crate::tui::compare::{Compare, wiped};
 use crate::tui::experts::{damage_badge, is_at};
 use crate::tui::face::Face;
 use crate::tui::image::{ERROR_RANGE, Raster};
-use crate::tui::theme::{OTHER, PREDICTION, WARNING, strong};
+use crate::tui::theme::{PREDICTION, SECOND, WARNING, strong};
 
 /// One image with its label.
 pub struct Slot {
@@ -88,7 +88,7 @@ pub fn slots(snapshot: &Snapshot, face: &Face) -> Vec<Slot> {
         };
         let psnr = decibels(&other.psnr_db, snapshot.cursor, other.frames.error_of);
         name_model(&mut b, "B", model_name(snapshot, other.model), psnr);
-        b.style = strong().patch(face.depth.ink(OTHER));
+        b.style = strong().patch(face.depth.ink(SECOND));
         b.keep = true;
         b
     });

@@ -36,8 +36,8 @@ impl Layout {
         }
         // The one in the middle has the most to say.
         let third = (plots.width - 4) / 3;
-        let (quality, rest) = columns(plots, third - 3, 2);
-        let (spread, samples) = columns(rest, third + 4, 2);
+        let (quality, rest) = columns(plots, third - 4, 2);
+        let (spread, samples) = columns(rest, third + 5, 2);
         self.put(Pane::Quality, quality);
         self.put(Pane::Spread, spread);
         self.put(Pane::Samples, samples);

@@ -9,7 +9,6 @@ use super::super::face::Face;
 use super::super::paint::put;
 use super::super::plane::Plane;
 use super::super::theme::{dim, strong};
-use super::at_step;
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
 
@@ -95,8 +94,12 @@ impl Arrows {
     }
 
     /// The letters with their cells: the prior, the sum where it is not the belief itself, the sensors. One whose cell
-    /// another has taken moves aside.
-    fn letters(&self, view: &Plane) -> Vec<((u16, u16), char, Option<Expert>)> {
+    /// another mark or letter has taken moves aside.
+    fn letters(
+        &self,
+        view: &Plane,
+        taken: &[(u16, u16)],
+    ) -> Vec<((u16, u16), char, Option<Expert>)> {
         let prior = (self.start, Expert::Prior.letter(), Some(Expert::Prior));
         // At its true length the correction ends where the belief's own mark stands.
         let sum = (self.factor > 1.0).then_some((self.sum, 'Σ', None));
@@ -109,7 +112,9 @@ impl Arrows {
             let Some((column, row)) = view.cell(at) else {
                 continue;
             };
-            let is_free = |cell: &(u16, u16)| placed.iter().all(|(taken, ..)| taken != cell);
+            let is_free = |cell: &(u16, u16)| {
+                !taken.contains(cell) && placed.iter().all(|(taken, ..)| taken != cell)
+            };
             let free = (0..5).map(|aside| (column + aside, row)).find(is_free);
             if let Some(cell) = free {
                 placed.push((cell, symbol, expert));
@@ -118,25 +123,31 @@ impl Arrows {
         placed
     }
 
-    /// The cells of the letters.
-    pub fn cells(&self, view: &Plane) -> Vec<(u16, u16)> {
-        self.letters(view)
+    /// The cells of the letters, beside those that marks have taken.
+    pub fn cells(&self, view: &Plane, taken: &[(u16, u16)]) -> Vec<(u16, u16)> {
+        self.letters(view, taken)
             .into_iter()
             .map(|(cell, ..)| cell)
             .collect()
     }
 
     /// Draws the letters.
-    pub fn draw(&self, buf: &mut Buffer, pane: Rect, view: &Plane, face: &Face) {
-        for ((column, row), symbol, expert) in self.letters(view) {
+    pub fn draw(
+        &self,
+        buf: &mut Buffer,
+        (pane, taken): (Rect, &[(u16, u16)]),
+        view: &Plane,
+        face: &Face,
+    ) {
+        for ((column, row), symbol, expert) in self.letters(view, taken) {
             let ink = expert.map_or_else(Style::new, |expert| face.depth.ink(expert.rgb()));
             put(buf, pane, column, row, symbol, strong().patch(ink));
         }
     }
 }
 
-/// Draws where the belief would be without each expert, its letter in brackets; not over a letter or the belief itself,
-/// from which it can then hardly be told.
+/// Draws where the belief would be without each expert, its letter in brackets; not over a letter or a mark: it
+/// could hardly be told from it.
 pub fn ghosts(
     buf: &mut Buffer,
     (pane, taken): (Rect, &[(u16, u16)]),
@@ -147,11 +158,6 @@ pub fn ghosts(
     let Some(fusion) = &snapshot.fusion else {
         return;
     };
-    let belief = snapshot
-        .position
-        .as_ref()
-        .and_then(|position| at_step(&position.belief, snapshot.cursor))
-        .and_then(|belief| view.cell(view.dot([belief.x, belief.y])));
     for (expert, reading) in std::iter::zip(&snapshot.experts, &fusion.experts) {
         let Some(without) = reading.without else {
             continue;
@@ -160,7 +166,7 @@ pub fn ghosts(
             continue;
         };
         let cells = [0, 1, 2].map(|i| ((column + i).saturating_sub(1), row));
-        if taken.iter().chain(&belief).any(|cell| cells.contains(cell)) {
+        if taken.iter().any(|cell| cells.contains(cell)) {
             continue;
         }
         let ink = dim().patch(face.depth.ink(expert.expert.rgb()));

@@ -80,13 +80,12 @@ fn table(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) -> u16 
     text(buf, pane, 0, row, "Σ sum", strong());
     pair(buf, pane, row, fusion.correction_m, strong());
     row += 1;
-    sentence(
-        buf,
-        pane,
-        row,
-        "sum: from the prior's position to the belief's; without: how far the belief moves when it leaves this step",
-        dim(),
-    )
+    // Edited controls have more to say where there is little room.
+    if pane.height < 20 && snapshot.control_edit.is_some() {
+        return row;
+    }
+    let words = "sum: from the prior's position to the belief's; without: how far the belief moves when it leaves this step";
+    sentence(buf, pane, row, words, dim())
 }
 
 fn pair(buf: &mut Buffer, pane: Rect, row: u16, value: Option<[f32; 2]>, style: Style) {
@@ -126,6 +125,12 @@ fn errors(buf: &mut Buffer, pane: Rect, first: u16, snapshot: &Snapshot) {
         line("  no R_p", &shown(now(&series.nees_bare)), "probe exact");
     }
     if let Some(edit) = &snapshot.control_edit {
-        sentence(buf, pane, row + 1, &edited::words(edit), strong());
+        sentence(
+            buf,
+            pane,
+            row + 1,
+            &edited::words(edit, if pane.height < 20 { 0 } else { u16::MAX }),
+            strong(),
+        );
     }
 }

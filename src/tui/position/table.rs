@@ -18,11 +18,11 @@ use super::super::braille::{Canvas, Stroke};
 use super::super::face::Face;
 use super::super::paint::{below_title, put, text, title};
 use super::super::plane::{Extent, Plane};
-use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
-use super::{at_step, dots, ellipses, marks, masses, off, paths, window};
+use super::{at_step, dots, ellipses, marked, marks, masses, off, paths, window};
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
 use crate::modality::Expert;
 use crate::session::snapshot::{PositionView, Snapshot};
@@ -69,7 +69,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let recorded = dots(&view, &position.recorded_controls);
     canvas.path(&recorded, Stroke::Sparse, dim());
     if let Some(other) = other {
-        let ink = face.depth.ink(OTHER);
+        let ink = face.depth.ink(SECOND);
         canvas.path(&dots(&view, &other.prediction), Stroke::Sparse, ink);
         canvas.path(&dots(&view, &other.belief), Stroke::DashDot, ink);
     }
@@ -87,14 +87,15 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     {
         put(buf, plane, column, row, 'r', strong());
     }
-    let taken = arrows
-        .as_ref()
-        .map(|arrows| arrows.cells(&view))
-        .unwrap_or_default();
+    let marked = marked(&view, position, snapshot.cursor);
+    let letters = arrows
+        .iter()
+        .flat_map(|arrows| arrows.cells(&view, &marked));
+    let taken: Vec<(u16, u16)> = letters.chain(marked.iter().copied()).collect();
     ghosts(buf, (plane, &taken), &view, snapshot, face);
     marks(buf, plane, &view, position, snapshot.cursor, face);
     if let Some(arrows) = &arrows {
-        arrows.draw(buf, plane, &view, face);
+        arrows.draw(buf, (plane, &marked), &view, face);
     }
 
     let cut = at_step(&position.belief, snapshot.cursor)
@@ -115,7 +116,7 @@ fn other_marks(
     cursor: usize,
     face: &Face,
 ) {
-    let ink = strong().patch(face.depth.ink(OTHER));
+    let ink = strong().patch(face.depth.ink(SECOND));
     for (path, symbol) in [(&other.prediction, '◇'), (&other.belief, '○')] {
         if let Some(now) = at_step(path, cursor)
             && let Some((column, row)) = view.cell(view.dot([now.x, now.y]))
@@ -138,20 +139,18 @@ struct Said {
 impl Said {
     fn legend(&self, buf: &mut Buffer, inner: Rect, rows: u16, snapshot: &Snapshot, face: &Face) {
         let prediction = face.depth.ink(PREDICTION);
-        let other = face.depth.ink(OTHER);
+        let other = face.depth.ink(SECOND);
         let masses = if self.cut {
             format!("{}, wider than this", masses())
         } else {
             masses()
         };
-        let letters: String = snapshot
-            .experts
-            .iter()
-            .map(|view| view.expert)
-            .filter(|&expert| expert != Expert::Prior)
-            .map(|expert| format!("─{}", expert.letter()))
-            .collect();
-        let chain = format!("{}{letters}", Expert::Prior.letter());
+        let experts = snapshot.experts.iter().map(|view| view.expert);
+        let sensors = experts.filter(|&expert| expert != Expert::Prior);
+        let mut chain = Expert::Prior.letter().to_string();
+        for expert in sensors {
+            chain.extend(['─', expert.letter()]);
+        }
         let pulls = match self.arrows {
             Some(factor) if factor > 1.0 => format!("pulls ×{factor}, sum Σ"),
             _ => "pulls, sum ●".to_owned(),

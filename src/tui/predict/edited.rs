@@ -1,25 +1,20 @@
 //! Edited controls in words.
 
+use super::super::paint::width;
 use crate::session::settings::ControlEdit;
 
-/// `controls from step 6: turned 30°, × 0.5, mirrored; the prediction follows these, the truth the recorded ones`.
-pub fn words(edit: &ControlEdit) -> String {
-    let from = edit.from + 1;
-    if edit.is_identity() {
-        return format!("controls from step {from}: as recorded");
-    }
-    let parts = if edit.scale == 0.0 {
-        "stopped".to_owned()
-    } else {
-        let turned = (edit.rotate_deg != 0.0).then(|| format!("turned {}°", edit.rotate_deg));
-        let scaled = ((edit.scale - 1.0).abs() > f32::EPSILON).then(|| format!("× {}", edit.scale));
-        let mirrored = edit.mirror.then(|| "mirrored".to_owned());
-        let parts: Vec<String> = [turned, scaled, mirrored].into_iter().flatten().collect();
-        parts.join(", ")
-    };
-    format!(
-        "controls from step {from}: {parts}; the prediction follows these, the truth the recorded ones"
-    )
+/// `controls from step 6: turned 30°, × 0.5, mirrored; the prediction follows these, the truth is as recorded`, the end
+/// shorter where there are fewer columns.
+pub fn words(edit: &ControlEdit, columns: u16) -> String {
+    let what = edit.words();
+    let said = [
+        "; the prediction follows these, the truth is as recorded",
+        "; truth as recorded",
+    ];
+    let fits = said
+        .into_iter()
+        .find(|end| width(&what) + width(end) <= columns);
+    format!("{what}{}", fits.unwrap_or_default())
 }
 
 #[cfg(test)]
@@ -34,11 +29,14 @@ mod tests {
             scale: 0.5,
             mirror: true,
         };
-        assert!(words(&edit).starts_with("controls from step 6: turned 30°, × 0.5, mirrored; "));
+        let turned = "controls from step 6: turned 30°, × 0.5, mirrored";
+        assert_eq!(words(&edit, 10), turned);
+        assert_eq!(words(&edit, 78), format!("{turned}; truth as recorded"));
+        assert!(words(&edit, 118).contains("the prediction follows these"));
         let stopped = ControlEdit { scale: 0.0, ..edit };
-        assert!(words(&stopped).starts_with("controls from step 6: stopped; "));
+        assert_eq!(words(&stopped, 10), "controls from step 6: stopped");
         assert_eq!(
-            words(&ControlEdit::from(0)),
+            words(&ControlEdit::from(0), 10),
             "controls from step 1: as recorded"
         );
     }

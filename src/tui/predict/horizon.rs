@@ -14,10 +14,10 @@ use ratatui::style::Style;
 
 use super::super::braille::Stroke;
 use super::super::face::Face;
-use super::super::paint::{below_title, text, title};
+use super::super::paint::{below_title, text, title, width};
 use super::super::plot::Plot;
 use super::super::scale::Scale;
-use super::super::theme::{OTHER, PREDICTION, dim, strong};
+use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{Entry, legend_below};
 use super::{ahead, cursor_ahead, labels};
@@ -51,9 +51,17 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .filter(|line| line.at(snapshot.cursor).is_finite())
         .map(|line| format!("{}{:.1}", line.mark, line.at(snapshot.cursor)))
         .collect();
-    title(buf, pane, "PSNR dB", &now.join(" "), focused);
+    // Where not all values fit, those of the first model do.
+    let note = now.join(" ");
+    let fits = width(&note) + 10 <= pane.width;
+    let note = if fits {
+        note
+    } else {
+        now[..now.len().min(2)].join(" ")
+    };
+    title(buf, pane, "PSNR dB", &note, focused);
     let inner = below_title(pane);
-    let names = names(snapshot);
+    let names = names(snapshot, pane.width);
     let entries: Vec<Entry> = std::iter::zip(&lines, &names)
         .map(|(line, name)| (line.glyph, line.style, name.as_str()))
         .collect();
@@ -99,12 +107,13 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 }
 
 /// What the lines are called, in their order.
-fn names(snapshot: &Snapshot) -> Vec<String> {
-    let mut names = vec!["belief".to_owned(), "prediction".to_owned()];
+fn names(snapshot: &Snapshot, columns: u16) -> Vec<String> {
+    let prediction = if columns < 26 { "pred" } else { "prediction" };
+    let mut names = vec!["belief".to_owned(), prediction.to_owned()];
     if let Some(other) = &snapshot.other {
         let model = snapshot.models.get(other.model);
         let model = model.map_or("B", |model| &model.name);
-        names.extend([format!("{model} belief"), "prediction".to_owned()]);
+        names.extend([format!("{model} belief"), prediction.to_owned()]);
     }
     names
 }
@@ -112,7 +121,7 @@ fn names(snapshot: &Snapshot) -> Vec<String> {
 /// The strokes are those of the position plane.
 fn lines<'a>(snapshot: &'a Snapshot, face: &Face) -> Vec<Line<'a>> {
     let prediction = face.depth.ink(PREDICTION);
-    let other = face.depth.ink(OTHER);
+    let other = face.depth.ink(SECOND);
     let line = |(glyph, mark), stroke, style, of, value| Line {
         glyph,
         mark,

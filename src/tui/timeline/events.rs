@@ -194,6 +194,6 @@ mod tests {
             seed: 0,
         };
         snapshot.corruptions = vec![(Modality::Vision, corruption)];
-        assert_eq!(drawn(&snapshot, 31), "events   ▔▔^▔▔*  ~~~         ~V");
+        assert_eq!(drawn(&snapshot, 31), "events   ▔▔^▔▔* ~~~          ~V");
     }
 }
