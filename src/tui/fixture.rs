@@ -169,6 +169,21 @@ pub fn compare(snapshot: &mut Snapshot) {
     }));
 }
 
+fn episode(steps: usize) -> EpisodeView {
+    EpisodeView {
+        id: "push-00002".to_owned(),
+        split: Some(Split::Test),
+        source: None,
+        secs: (0..steps).map(|t| t as f64 / 3.75).collect(),
+        force_newtons: (0..steps)
+            .map(|t| if t < 4 { 0.05 } else { 1.0 + 2.0 * noise(t) })
+            .collect(),
+        flags: Vec::new(),
+        flagged_steps: Vec::new(),
+        missing: Vec::new(),
+    }
+}
+
 /// The session at a step of an episode of so many.
 pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
     let (now, belief, prediction) = frames(cursor);
@@ -203,18 +218,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
             trained_sets: vec![ExpertSet::full(3)],
         })],
         model: 0,
-        episode: Some(Arc::new(EpisodeView {
-            id: "push-00002".to_owned(),
-            split: Some(Split::Test),
-            source: None,
-            secs: (0..steps).map(|t| t as f64 / 3.75).collect(),
-            force_newtons: (0..steps)
-                .map(|t| if t < 4 { 0.05 } else { 1.0 + 2.0 * noise(t) })
-                .collect(),
-            flags: Vec::new(),
-            flagged_steps: Vec::new(),
-            missing: Vec::new(),
-        })),
+        episode: Some(Arc::new(episode(steps))),
         episode_index: 2,
         episode_count: 24,
         cursor,

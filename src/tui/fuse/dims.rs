@@ -12,6 +12,8 @@
 //! position's variance that comes through the dimension. One whose mean does not move over the data is greyed and has
 //! no number (D19).
 
+use std::fmt::Write;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -138,7 +140,8 @@ fn note(fusion: Option<&FusionView>, dims: usize, zoomed: bool) -> String {
         note.push_str(&fusion.active_from);
     }
     if fusion.attribution.is_some() {
-        note.push_str(&format!(", ±{:.2} cm", 100.0 * most_metres(fusion)));
+        // Writing to a string cannot fail.
+        let _ = write!(note, ", ±{:.2} cm", 100.0 * most_metres(fusion));
     }
     note
 }

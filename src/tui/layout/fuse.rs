@@ -21,7 +21,7 @@ use crate::tui::view::Pane;
 const PAIRS_ROWS: u16 = 6;
 const MOST: u16 = 13;
 /// Columns of the pairs, of sixteen stacks of two columns, and of KL terms with bars worth a look.
-const PAIRS: u16 = 37;
+const PAIRS: u16 = 38;
 const DIMS: u16 = 39;
 const DIVERGENCE: u16 = 36;
 
@@ -60,7 +60,8 @@ impl Layout {
     }
 
     fn middle(&mut self, pane: Rect) {
-        let (pairs, rest) = columns(pane, PAIRS, 2);
+        let gap = if pane.width > PAIRS + DIMS + 1 { 2 } else { 1 };
+        let (pairs, rest) = columns(pane, PAIRS, gap);
         self.put(Pane::Pairs, pairs);
         match rest.width.checked_sub(DIMS + 3 + DIVERGENCE) {
             Some(spare) => {
