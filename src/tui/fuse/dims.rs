@@ -70,7 +70,7 @@ impl Parts {
     fn of(rows: u16, carries: bool, shuffled: bool) -> Self {
         if !carries {
             return Self {
-                share: rows.min(8),
+                share: rows.min(12),
                 ..Self::default()
             };
         }
@@ -78,12 +78,13 @@ impl Parts {
             0..=3 => (0, 0, 0),
             4..=8 => (1, 0, 0),
             9..=12 => (2, 1, 0),
-            _ => (2, 1, 1),
+            13..=23 => (2, 1, 1),
+            _ => (4, 2, 1),
         };
         let importance = u16::from(shuffled && rows >= 11);
         let used = 2 * axis + 2 * variance + importance + 2 * gap;
         Self {
-            share: rows.saturating_sub(used).min(8),
+            share: rows.saturating_sub(used).min(12),
             axis,
             variance,
             importance,
