@@ -59,7 +59,7 @@ impl Layout {
         let (timeline, rest) = rows(below, timeline);
         self.put(Pane::Timeline, timeline);
         // A tall screen has room for the latents too, once the curves are as high as makes a calm picture.
-        let high = 3 * series::rows(shape.experts);
+        let high = 3 * series::rows(shape.experts) - 3;
         let series = if rest.height >= high + LATENTS {
             high
         } else {

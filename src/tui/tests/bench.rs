@@ -4,6 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use ratatui::layout::Position;
+use ratatui::style::Color;
 
 use super::{LARGE, SMALL, app, described, pressed, screen};
 use crate::measure::corruption::{Corruption, Damage};
@@ -117,6 +118,27 @@ fn the_bench() {
         for size in [SMALL, LARGE] {
             let name = format!("{name}_{}x{}", size.0, size.1);
             insta::assert_snapshot!(name, described(&screen(&snapshot, &face, size)));
+        }
+    }
+}
+
+#[test]
+fn without_colour_nothing_has_one_and_removed_and_damaged_differ() {
+    for (name, (snapshot, mut face)) in pictures() {
+        face.depth = Depth::Plain;
+        let shown = screen(&snapshot, &face, SMALL);
+        let plain = |color: Color| color == Color::Reset;
+        assert!(
+            shown
+                .content
+                .iter()
+                .all(|cell| plain(cell.fg) && plain(cell.bg)),
+            "{name}"
+        );
+        if name == "fuse_removed_and_damaged" {
+            let text = to_text(&shown, false);
+            assert!(text.contains("haptic  ○ off") && text.contains("~noise 0.5"));
+            insta::assert_snapshot!("fuse_without_colour", text);
         }
     }
 }
