@@ -50,8 +50,6 @@ mod timeline;
 mod words;
 
 #[cfg(test)]
-mod dump;
-#[cfg(test)]
 mod fixture;
 #[cfg(test)]
 mod tests;
