@@ -179,7 +179,7 @@ impl Plane {
         }
         let end = self.left + across * self.cm_per_dot;
         let mut free = GUTTER;
-        for (x, _) in whole(Scale::linear(self.left, end), (across / 16.0) as u16) {
+        for (x, _) in whole(Scale::linear(self.left, end), (across / 10.0) as u16) {
             let label = (x.round() as i32).to_string();
             let centre = GUTTER + ((x - self.left) / self.cm_per_dot / 2.0) as u16;
             let at = centre.saturating_sub(width(&label) / 2);

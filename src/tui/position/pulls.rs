@@ -22,7 +22,7 @@ use super::super::theme::{dim, strong};
 use super::super::view::Pane;
 use super::super::words::sentence;
 use super::at_step;
-use crate::session::snapshot::Snapshot;
+use crate::session::snapshot::{Badge, Snapshot};
 
 /// Where each column ends.
 const X: u16 = 18;
@@ -46,7 +46,12 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 /// Returns the row after the table.
 fn table(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) -> u16 {
     let Some(fusion) = &snapshot.fusion else {
-        return sentence(buf, pane, 0, "no product of experts at this step", dim());
+        let why = match &snapshot.badge {
+            Badge::NoProduct => "this model has no product of experts: nothing pulls",
+            _ if snapshot.busy => "computing…",
+            _ => "no product of experts at this step",
+        };
+        return sentence(buf, pane, 0, why, dim());
     };
     if fusion.prior_m.is_none() {
         return sentence(buf, pane, 0, "no probe: nothing can be said in cm", dim());

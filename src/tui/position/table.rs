@@ -27,9 +27,6 @@ use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
 use crate::modality::Expert;
 use crate::session::snapshot::{PositionView, Snapshot};
 
-/// Rows of the legend at most.
-const LEGEND: u16 = 3;
-
 /// Draws the plane with its legend.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let focused = face.is_focused(Pane::Position);
@@ -49,17 +46,24 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .as_ref()
         .and_then(|other| other.position.as_ref());
     let extent = Extent::of(position).map(|extent| extent.and(other.and_then(Extent::of)));
-    // The window does not depend on what the legend says, or the picture would jump.
-    let room = LEGEND.min(inner.height / 4);
+    let fan = snapshot
+        .spread
+        .as_ref()
+        .filter(|_| snapshot.sampling.shown || face.zoomed);
+    // Room for the longest legend of these settings: the window must not jump while the cursor moves.
+    let longest = Said {
+        arrows: Some(100.0),
+        samples: fan.map(|spread| spread.samples),
+        cut: false,
+    };
+    let entries = longest.entries(snapshot, face);
+    let wanted = legend_rows(&borrowed(&entries), inner.width).len() as u16;
+    let room = wanted.min(inner.height / 4).max(1);
     let Some((plane, view)) = window(inner, room, extent) else {
         return;
     };
     view.axes(buf, inner);
     let arrows = Arrows::of(snapshot, &view);
-    let fan = snapshot
-        .spread
-        .as_ref()
-        .filter(|_| snapshot.sampling.shown || face.zoomed);
     let mut canvas = Canvas::new(plane.width, plane.height);
     for path in fan.iter().flat_map(|spread| &spread.fan) {
         let path: Vec<(f32, f32)> = path.iter().map(|&point| view.dot(point)).collect();
@@ -102,10 +106,15 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         .is_some_and(|now| view.cuts(&view.ellipse(&now, SIGMAS_OF_95_PERCENT)));
     let said = Said {
         arrows: arrows.as_ref().map(|arrows| arrows.factor),
-        samples: fan.map(|spread| spread.samples),
         cut,
+        ..longest
     };
-    said.legend(buf, inner, room, snapshot, face);
+    let entries = said.entries(snapshot, face);
+    let entries = borrowed(&entries);
+    let lines = legend_rows(&entries, inner.width);
+    for (i, line) in lines.into_iter().take(usize::from(room)).enumerate() {
+        legend(buf, inner, inner.height - room + i as u16, line);
+    }
 }
 
 fn other_marks(
@@ -137,55 +146,58 @@ struct Said {
 }
 
 impl Said {
-    fn legend(&self, buf: &mut Buffer, inner: Rect, rows: u16, snapshot: &Snapshot, face: &Face) {
+    fn entries(&self, snapshot: &Snapshot, face: &Face) -> Vec<(String, Style, String)> {
         let prediction = face.depth.ink(PREDICTION);
-        let other = face.depth.ink(SECOND);
-        let masses = if self.cut {
-            format!("{}, wider than this", masses())
-        } else {
-            masses()
+        let second = face.depth.ink(SECOND);
+        let mut entries = Vec::new();
+        let mut entry = |glyph: &str, style: Style, name: String| {
+            entries.push((glyph.to_owned(), style, name));
         };
-        let experts = snapshot.experts.iter().map(|view| view.expert);
-        let sensors = experts.filter(|&expert| expert != Expert::Prior);
-        let mut chain = Expert::Prior.letter().to_string();
-        for expert in sensors {
-            chain.extend(['─', expert.letter()]);
+        entry("╌×", dim(), "truth".to_owned());
+        entry("─●", Style::new(), "belief".to_owned());
+        entry("┈◆", prediction, "prediction".to_owned());
+        entry("+", Style::new(), "tip".to_owned());
+        if let Some(factor) = self.arrows {
+            let pulls = if factor > 1.0 {
+                format!("pulls ×{factor}, sum Σ")
+            } else {
+                "pulls, sum ●".to_owned()
+            };
+            entry(&chain(snapshot), strong(), pulls);
+            entry("(V)", dim(), "without V".to_owned());
         }
-        let pulls = match self.arrows {
-            Some(factor) if factor > 1.0 => format!("pulls ×{factor}, sum Σ"),
-            _ => "pulls, sum ●".to_owned(),
-        };
-        let samples = self.samples.map(|samples| format!("of {samples} samples"));
-        let name = snapshot
-            .other
-            .as_ref()
-            .and_then(|other| snapshot.models.get(other.model))
-            .map(|model| (format!("{} belief", model.name), "prediction"));
-        let mut entries: Vec<Entry> = vec![
-            ("╌×", dim(), "truth"),
-            ("─●", Style::new(), "belief"),
-            ("┈◆", prediction, "prediction"),
-            ("+", Style::new(), "tip"),
-        ];
-        if self.arrows.is_some() {
-            entries.push((&chain, strong(), &pulls));
-            entries.push(("(V)", dim(), "without V"));
-        }
-        entries.push(("○", Style::new(), &masses));
-        if let Some((belief, prediction)) = &name {
-            entries.push(("╴·○", other, belief));
-            entries.push(("· ◇", other, prediction));
+        if let Some(other) = &snapshot.other {
+            let model = snapshot.models.get(other.model);
+            let name = model.map_or("B", |model| &model.name);
+            entry("╴·○", second, format!("{name} belief"));
+            entry("· ◇", second, "prediction".to_owned());
         }
         if snapshot.control_edit.is_some() {
-            entries.push(("· r", dim(), "recorded controls"));
+            entry("· r", dim(), "recorded controls".to_owned());
         }
-        if let Some(samples) = &samples {
-            entries.push(("···", prediction, samples));
+        if let Some(samples) = self.samples {
+            entry("···", prediction, format!("of {samples} samples"));
         }
-        let first = inner.height - rows;
-        let lines = legend_rows(&entries, inner.width);
-        for (i, line) in lines.into_iter().take(usize::from(rows)).enumerate() {
-            legend(buf, inner, first + i as u16, line);
-        }
+        let cut = if self.cut { ", wider than this" } else { "" };
+        entry("○", Style::new(), format!("{}{cut}", masses()));
+        entries
     }
+}
+
+/// The prior and the sensors as a chain: `D─V─H─P`.
+fn chain(snapshot: &Snapshot) -> String {
+    let experts = snapshot.experts.iter().map(|view| view.expert);
+    let sensors = experts.filter(|&expert| expert != Expert::Prior);
+    let mut chain = Expert::Prior.letter().to_string();
+    for expert in sensors {
+        chain.extend(['─', expert.letter()]);
+    }
+    chain
+}
+
+fn borrowed(entries: &[(String, Style, String)]) -> Vec<Entry<'_>> {
+    entries
+        .iter()
+        .map(|(glyph, style, name)| (glyph.as_str(), *style, name.as_str()))
+        .collect()
 }

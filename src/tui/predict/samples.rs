@@ -32,7 +32,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         let why = if snapshot.busy {
             "computing…"
         } else {
-            "nothing was predicted yet"
+            "not computed yet"
         };
         text(buf, below_title(pane), 0, 0, why, dim());
         return;

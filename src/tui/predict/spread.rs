@@ -55,7 +55,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         let why = if snapshot.busy {
             "computing…"
         } else {
-            "nothing was predicted yet"
+            "not computed yet"
         };
         text(buf, inner, 0, 0, why, dim());
         return;
