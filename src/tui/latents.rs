@@ -48,15 +48,19 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         text(buf, pane, 0, 0, "no belief at this step", dim());
         return;
     };
-    let pane = if face.is_zoomed(Pane::Latents) {
+    if face.is_zoomed(Pane::Latents) {
         let table = numbers::width_of(snapshot.experts.len()).min(pane.width);
         let (table, rest) = columns(pane, table, 3);
         numbers::draw(buf, table, snapshot, face);
         // The intervals stand in line with the numbers.
-        rows(rest, 2).1
+        intervals(buf, rows(rest, 2).1, belief, snapshot, face);
     } else {
-        pane
-    };
+        intervals(buf, pane, belief, snapshot, face);
+    }
+}
+
+fn intervals(buf: &mut Buffer, pane: Rect, belief: &LatentView, snapshot: &Snapshot, face: &Face) {
+    let expert = snapshot.experts.get(face.expert);
     let other = expert.and_then(|view| Some((view.expert, view.latent.as_ref()?)));
     let reach = reach(belief).max(other.map_or(0.0, |(_, latent)| reach(latent)));
     let table = if pane.width >= TABLE + 24 && !face.zoomed {

@@ -194,7 +194,11 @@ fn line(
 
 /// The chosen set in words, as many as there is room for.
 fn about(buf: &mut Buffer, pane: Rect, cell: &LatticeCell) {
-    let enter = "⏎ switch to it";
+    let enter = if cell.current {
+        "↑↓ choose"
+    } else {
+        "↑↓ choose  ⏎ switch to it"
+    };
     let mut parts = Vec::new();
     if cell.current {
         parts.push("the present switches".to_owned());
@@ -214,7 +218,7 @@ fn about(buf: &mut Buffer, pane: Rect, cell: &LatticeCell) {
             at = text(buf, pane, at + 2, 0, &part, Style::new());
         }
     }
-    if !cell.current && at + 2 + width(enter) <= pane.width {
+    if at + 2 + width(enter) <= pane.width {
         right(buf, pane, pane.width, 0, enter, dim());
     }
 }

@@ -108,8 +108,9 @@ impl Layout {
     fn zoom(&mut self, body: Rect, pane: Pane, shape: Shape) {
         match pane {
             // The switches alone would leave the screen empty.
-            Pane::Experts if shape.view == View::Overview => {
-                let (upper, lower) = rows(body, experts_rows(shape.experts));
+            Pane::Experts if shape.product => {
+                let notes = if shape.view == View::Fuse { 3 } else { 0 };
+                let (upper, lower) = rows(body, experts_rows(shape.experts) + notes);
                 self.put(Pane::Experts, upper);
                 self.put(Pane::Dims, rows(lower, 1).1);
             }

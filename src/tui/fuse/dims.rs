@@ -12,6 +12,8 @@
 //! position's variance that comes through the dimension. One whose mean does not move over the data is greyed and has
 //! no number (D19).
 
+use std::fmt::Write;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -68,7 +70,7 @@ impl Parts {
     fn of(rows: u16, carries: bool, shuffled: bool) -> Self {
         if !carries {
             return Self {
-                share: rows.min(8),
+                share: rows.min(12),
                 ..Self::default()
             };
         }
@@ -76,12 +78,13 @@ impl Parts {
             0..=3 => (0, 0, 0),
             4..=8 => (1, 0, 0),
             9..=12 => (2, 1, 0),
-            _ => (2, 1, 1),
+            13..=23 => (2, 1, 1),
+            _ => (4, 2, 1),
         };
         let importance = u16::from(shuffled && rows >= 11);
         let used = 2 * axis + 2 * variance + importance + 2 * gap;
         Self {
-            share: rows.saturating_sub(used).min(8),
+            share: rows.saturating_sub(used).min(12),
             axis,
             variance,
             importance,
@@ -138,7 +141,8 @@ fn note(fusion: Option<&FusionView>, dims: usize, zoomed: bool) -> String {
         note.push_str(&fusion.active_from);
     }
     if fusion.attribution.is_some() {
-        note.push_str(&format!(", ±{:.2} cm", 100.0 * most_metres(fusion)));
+        // Writing to a string cannot fail.
+        let _ = write!(note, ", ±{:.2} cm", 100.0 * most_metres(fusion));
     }
     note
 }

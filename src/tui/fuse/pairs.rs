@@ -1,12 +1,12 @@
 //! Who disagrees with whom (D9), and how much agreement the product forces (D10).
 //!
 //! ```text
-//! pairs d²     H      P      D
+//! pairs d²     H      P      D  6.9–28.8
 //! V         12.9   14.7   20.0
 //! H                 8.3   31.2▲
 //! P                       10.5
 //! Q 61.0  95 %: 26.0–61.8, 42 dof
-//! within 95 % of agreeing experts
+//! within 95 % of agreeing experts σ 0.25
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -18,7 +18,7 @@ use crate::measure::innovation::{Conflict, Disagreement};
 use crate::session::snapshot::{Badge, Snapshot};
 use crate::tui::face::Face;
 use crate::tui::layout::rows;
-use crate::tui::paint::{below_title, paragraph, put, right, short, text, title};
+use crate::tui::paint::{below_title, paragraph, put, right, short, text, title, width};
 use crate::tui::theme::{Depth, WARNING, dim, strong};
 use crate::tui::view::Pane;
 
@@ -56,6 +56,17 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         }
         if i + 1 < experts && view.alpha <= 0.0 {
             text(buf, pane, 2, 1 + i as u16, "off", dim());
+        }
+    }
+    if let Some(bounds) = fusion.disagreements.iter().find_map(|pair| pair.bounds) {
+        let stated = [
+            format!("▲▼ outside 95 %: {}", range(bounds)),
+            format!("95 %: {}", range(bounds)),
+            range(bounds),
+        ];
+        let room = pane.width.saturating_sub(end(experts.max(1) - 1) + 1);
+        if let Some(stated) = stated.iter().find(|stated| width(stated) <= room) {
+            right(buf, pane, pane.width, 0, stated, dim());
         }
     }
     for pair in &fusion.disagreements {
@@ -130,8 +141,19 @@ fn conflict(buf: &mut Buffer, pane: Rect, reading: Conflict, snapshot: &Snapshot
     let sigma = snapshot.belief.as_ref().map_or(f32::NAN, |belief| {
         belief.sigma.iter().sum::<f32>() / belief.sigma.len().max(1) as f32
     });
-    let more = format!("σ of the belief {}", short(sigma));
-    text(buf, pane, 0, row, &more, dim());
+    if roomy {
+        let more = format!("σ of the belief {}", short(sigma));
+        text(buf, pane, 0, row, &more, dim());
+    } else {
+        right(
+            buf,
+            pane,
+            pane.width,
+            1,
+            &format!("σ {}", short(sigma)),
+            dim(),
+        );
+    }
     if pane.height > row + 1 {
         let normaliser = format!(
             "ln C {}  the product's normaliser",

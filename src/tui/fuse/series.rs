@@ -205,8 +205,8 @@ fn bars(buf: &mut Buffer, pane: Rect, axis: Axis, row: &Row, cursor: usize, face
                 );
             }
             let style = if above { strong() } else { dim() }.patch(row.style);
-            if of_bound && value.is_finite() {
-                let fill = if above {
+            if pane.height == 1 && value.is_finite() {
+                let fill = if of_bound && above {
                     '▲'
                 } else {
                     eighth(value / top).max('▁')

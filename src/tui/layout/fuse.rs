@@ -21,9 +21,11 @@ use crate::tui::view::Pane;
 const PAIRS_ROWS: u16 = 6;
 const MOST: u16 = 13;
 /// Columns of the pairs, of sixteen stacks of two columns, and of KL terms with bars worth a look.
-const PAIRS: u16 = 37;
+const PAIRS: u16 = 38;
 const DIMS: u16 = 39;
 const DIVERGENCE: u16 = 36;
+/// Rows of the latents that are worth a pane, with the blank one above them.
+const LATENTS: u16 = 14;
 
 impl Layout {
     pub(super) fn fuse(&mut self, body: Rect, shape: Shape) {
@@ -54,13 +56,23 @@ impl Layout {
         } else {
             rows(below, roomy).1
         };
-        let (timeline, series) = rows(below, timeline);
+        let (timeline, rest) = rows(below, timeline);
         self.put(Pane::Timeline, timeline);
+        // A tall screen has room for the latents too, once the curves are as high as makes a calm picture.
+        let high = 3 * series::rows(shape.experts) - 3;
+        let series = if rest.height >= high + LATENTS {
+            high
+        } else {
+            rest.height
+        };
+        let (series, latents) = rows(rest, series);
         self.put(Pane::Series, series);
+        self.put(Pane::Latents, rows(latents, 1).1);
     }
 
     fn middle(&mut self, pane: Rect) {
-        let (pairs, rest) = columns(pane, PAIRS, 2);
+        let gap = if pane.width > PAIRS + DIMS + 1 { 2 } else { 1 };
+        let (pairs, rest) = columns(pane, PAIRS, gap);
         self.put(Pane::Pairs, pairs);
         match rest.width.checked_sub(DIMS + 3 + DIVERGENCE) {
             Some(spare) => {
