@@ -2,8 +2,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod rollout;
-
 use std::fmt::Write;
 use std::sync::Arc;
 use std::time::Duration;
@@ -31,6 +29,7 @@ use crate::session::keys::{Key, parse_script};
 use crate::session::snapshot::{Badge, Message, Snapshot};
 
 mod bench;
+mod rollout;
 
 const SMALL: (u16, u16) = (80, 24);
 const LARGE: (u16, u16) = (120, 40);
