@@ -111,6 +111,7 @@ fn drawing(pane: Pane) -> fn(&mut Buffer, Rect, &Snapshot, &Face) {
         Pane::Timeline => timeline::draw,
         Pane::Pairs => fuse::pairs::draw,
         Pane::Divergence => fuse::divergence::draw,
+        Pane::Response => fuse::response::draw,
         Pane::Series => fuse::series::draw,
         Pane::Spread => predict::spread::draw,
         Pane::Quality => predict::horizon::draw,
@@ -146,6 +147,7 @@ fn own_layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
         steps,
         experts: snapshot.experts.len(),
         product: snapshot.badge != Badge::NoProduct,
+        damaged: !snapshot.corruptions.is_empty(),
         zoom: face.zoomed.then_some(face.focus),
     };
     Layout::of(screen, shape)

@@ -1,6 +1,6 @@
 //! A made-up but plausible moment of a session: a plate that is pushed for 16 steps, seen by four experts.
 
-mod bench;
+pub mod bench;
 
 use std::sync::Arc;
 

@@ -3,6 +3,7 @@
 pub mod dims;
 pub mod divergence;
 pub mod pairs;
+pub mod response;
 pub mod series;
 
 mod bounds;

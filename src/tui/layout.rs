@@ -33,6 +33,8 @@ pub struct Shape {
     pub experts: usize,
     /// Whether the model multiplies them.
     pub product: bool,
+    /// Whether an input is damaged.
+    pub damaged: bool,
     /// The pane that is alone on the screen.
     pub zoom: Option<Pane>,
 }
@@ -209,6 +211,7 @@ mod tests {
                         steps,
                         experts,
                         product: experts != 3,
+                        damaged: steps == 48,
                         zoom: None,
                     };
                     check(screen, shape);
@@ -236,6 +239,7 @@ mod tests {
                     steps: 16,
                     experts: 4,
                     product: true,
+                    damaged: false,
                     zoom: None,
                 };
                 let own = Layout::of(screen, shape);
@@ -259,7 +263,7 @@ mod tests {
                 }
             }
         }
-        assert!(dragged > 200, "{dragged}");
+        assert!(dragged > 100, "{dragged}");
     }
 
     #[test]
@@ -272,6 +276,7 @@ mod tests {
                     steps: 16,
                     experts: 4,
                     product: true,
+                    damaged: false,
                     zoom: Some(pane),
                 };
                 assert!(!Layout::of(screen, shape).get(pane).is_empty(), "{pane:?}");

@@ -46,6 +46,8 @@ pub enum Pane {
     Pairs,
     /// KL terms, mean and spread apart.
     Divergence,
+    /// What rising damage does.
+    Response,
     /// Diagnostics over time.
     Series,
     /// Spread of the rollout over its steps, in three ways.
@@ -103,12 +105,14 @@ impl View {
     pub fn panes(self) -> &'static [Pane] {
         use Pane::{
             Coverage, Dependence, Dims, Divergence, Experts, Frames, Horizons, Latents, Numbers,
-            Pairs, Position, Pulls, Quality, Samples, Series, Sets, Spread, Strip, Timeline,
-            Verdict,
+            Pairs, Position, Pulls, Quality, Response, Samples, Series, Sets, Spread, Strip,
+            Timeline, Verdict,
         };
         match self {
             Self::Overview => &[Frames, Experts, Latents, Position, Timeline],
-            Self::Fuse => &[Experts, Pairs, Dims, Divergence, Latents, Series, Timeline],
+            Self::Fuse => &[
+                Experts, Pairs, Dims, Divergence, Response, Latents, Series, Timeline,
+            ],
             Self::Predict => &[Strip, Quality, Spread, Samples, Timeline],
             Self::Position => &[Position, Pulls, Experts, Timeline],
             Self::Consistency => &[Verdict, Horizons, Coverage, Numbers, Dependence, Timeline],
@@ -130,7 +134,7 @@ impl View {
 impl Pane {
     /// All there are.
     #[cfg(test)]
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 21] = [
         Self::Frames,
         Self::Strip,
         Self::Experts,
@@ -140,6 +144,7 @@ impl Pane {
         Self::Timeline,
         Self::Pairs,
         Self::Divergence,
+        Self::Response,
         Self::Series,
         Self::Spread,
         Self::Quality,
@@ -165,6 +170,7 @@ impl Pane {
             Self::Timeline => "timeline",
             Self::Pairs => "pairs",
             Self::Divergence => "KL",
+            Self::Response => "response",
             Self::Series => "series",
             Self::Spread => "spread",
             Self::Quality => "PSNR",

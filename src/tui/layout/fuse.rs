@@ -14,7 +14,7 @@
 use ratatui::layout::Rect;
 
 use super::{Layout, Shape, columns, experts_rows, rows};
-use crate::tui::fuse::series;
+use crate::tui::fuse::{response, series};
 use crate::tui::view::Pane;
 
 /// Rows of the pairs: who, three of distances, the conflict and what it means; and the most that are of use.
@@ -26,6 +26,9 @@ const DIMS: u16 = 39;
 const DIVERGENCE: u16 = 36;
 /// Rows of the latents that are worth a pane, with the blank one above them.
 const LATENTS: u16 = 14;
+
+/// Rows of the KL terms of three sensors, with their title.
+const KL_ROWS: u16 = 8;
 
 impl Layout {
     pub(super) fn fuse(&mut self, body: Rect, shape: Shape) {
@@ -50,7 +53,7 @@ impl Layout {
             _ => 0,
         };
         let (middle, below) = rows(rest, middle);
-        self.middle(middle);
+        self.middle(middle, shape);
         let below = if middle.is_empty() {
             below
         } else {
@@ -70,7 +73,7 @@ impl Layout {
         self.put(Pane::Latents, rows(latents, 1).1);
     }
 
-    fn middle(&mut self, pane: Rect) {
+    fn middle(&mut self, pane: Rect, shape: Shape) {
         let gap = if pane.width > PAIRS + DIMS + 1 { 2 } else { 1 };
         let (pairs, rest) = columns(pane, PAIRS, gap);
         self.put(Pane::Pairs, pairs);
@@ -78,7 +81,12 @@ impl Layout {
             Some(spare) => {
                 let (dims, divergence) = columns(rest, DIMS + spare / 2, 3);
                 self.put(Pane::Dims, dims);
+                let least = KL_ROWS + response::ROWS;
+                let split = shape.damaged && divergence.height >= least;
+                let below = if split { response::ROWS } else { 0 };
+                let (divergence, response) = rows(divergence, divergence.height - below);
                 self.put(Pane::Divergence, divergence);
+                self.put(Pane::Response, response);
             }
             None => self.put(Pane::Dims, rest),
         }

@@ -62,6 +62,7 @@ pub fn pictures() -> Vec<(&'static str, (Snapshot, Face))> {
                     .disagreements
                     .retain(|pair| pair.a != 1 && pair.b != 1);
                 snapshot.corruptions = vec![(Modality::Proprio, damaged(Damage::Noise, 0.5))];
+                snapshot.responses = fixture::bench::responses();
             }),
         ),
         (

@@ -219,9 +219,11 @@ fn controls_turn_scale_mirror_stop_and_come_back() {
         mirror: true,
     };
     assert_eq!(edit, expected);
-    assert!(hint.unwrap().starts_with(
-        "controls from step 6: mirrored, turned 30°, 0.5 times as fast | - = turn, ↑ ↓ speed,"
-    ));
+    assert!(
+        hint.unwrap().starts_with(
+            "controls from step 6: turned 30°, × 0.5, mirrored | - = turn, ↑ ↓ speed,"
+        )
+    );
     at.cursor = 9;
     played("r-", &mut at);
     assert_eq!(

@@ -1,0 +1,82 @@
+//! What rising damage does (D17): position error, NEES and the damaged expert's share, from severity 0 to 1.
+//!
+//! ```text
+//! response ─────────────── severity 0 to 1
+//! H ~noise   ▁▁▂▂▃▄▅▅▆▇█   0.4 → 2.4 cm
+//!            ▁▂▂▃▄▄▅▆▆▇█   2.0 → 11.0 NEES
+//!            █▇▇▇▆▆▆▅▅▅▅   14 → 9 % share
+//! haptic doubts itself: under noise its share falls from 14 % to 9 %
+//! ```
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+use crate::session::snapshot::Snapshot;
+use crate::session::snapshot::response::ResponseView;
+use crate::tui::face::Face;
+use crate::tui::paint::{below_title, eighth, paragraph, text, title};
+use crate::tui::theme::{dim, strong};
+use crate::tui::view::Pane;
+
+/// Rows of one damage: three curves and a sentence of up to two rows; the title stands above all.
+pub const ROWS: u16 = 6;
+/// Columns before the curves, and between them and their numbers.
+const NAMES: u16 = 11;
+const GAP: u16 = 2;
+
+/// Draws each damage in turn, as many as there is room for.
+pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
+    let focused = face.is_focused(Pane::Response);
+    title(buf, pane, "response", "severity 0 to 1", focused);
+    let inner = below_title(pane);
+    if snapshot.responses.is_empty() {
+        let why = if snapshot.corruptions.is_empty() {
+            "Nothing is damaged: x damages the input of the expert whose digit was pressed last."
+        } else {
+            "computing…"
+        };
+        paragraph(buf, inner, 0, why, dim());
+        return;
+    }
+    let mut row = 0;
+    for response in snapshot.responses.iter() {
+        if row + 3 > inner.height {
+            return;
+        }
+        row = curves(buf, inner, row, response, face);
+    }
+}
+
+fn curves(buf: &mut Buffer, pane: Rect, row: u16, response: &ResponseView, face: &Face) -> u16 {
+    let ink = face.depth.ink(response.expert.rgb());
+    let letter = response.expert.letter();
+    text(buf, pane, 0, row, &letter.to_string(), strong().patch(ink));
+    let badge = format!("~{}", response.damage.name());
+    text(buf, pane, 2, row, &badge, Style::new());
+    let lines: [(&[f32], f32, usize, &str); 3] = [
+        (&response.rmse_m, 100.0, 1, "cm"),
+        (&response.nees, 1.0, 1, "NEES"),
+        (&response.share, 100.0, 0, "% share"),
+    ];
+    for (i, (values, factor, decimals, unit)) in lines.into_iter().enumerate() {
+        let row = row + i as u16;
+        let most = values.iter().copied().fold(0.0, f32::max);
+        let curve: String = values.iter().map(|value| eighth(value / most)).collect();
+        let at = text(buf, pane, NAMES, row, &curve, ink) + GAP;
+        let number = |value: Option<&f32>| match value {
+            Some(value) if value.is_finite() => format!("{:.decimals$}", factor * value),
+            _ => "–".to_owned(),
+        };
+        let (first, last) = (number(values.first()), number(values.last()));
+        text(
+            buf,
+            pane,
+            at,
+            row,
+            &format!("{first} → {last} {unit}"),
+            Style::new(),
+        );
+    }
+    paragraph(buf, pane, row + 3, &response.sentence, Style::new())
+}
