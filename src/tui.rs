@@ -97,6 +97,9 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
     if let Some(page) = face.help {
         help::draw(buf, screen, page);
     }
+    if let Some(pixels) = &face.pixels {
+        pixels.finish(buf);
+    }
 }
 
 /// What draws a pane.

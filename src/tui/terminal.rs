@@ -5,36 +5,36 @@
 //! signal thread ─┼─► bounded channel ─► loop: drain all, let the session take in what is done, draw once
 //! session, images┘
 //! ```
-//! With nothing to play or compute the loop sleeps on the channel.
+//! With nothing to play or compute the loop sleeps on the channel. What the terminal can show is asked before the first
+//! frame and never waited for: the answers come among the keys.
 
+mod decode;
 mod guard;
+mod screen;
+#[cfg(test)]
+mod tests;
 
-use std::io::{self, BufWriter, Stdout, Write, stdout};
+use std::fs::File;
+use std::io::{self, BufWriter, IsTerminal, Read, Write, stdin, stdout};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Instant;
 
-use crossterm::clipboard::CopyToClipboard;
-use crossterm::event::{
-    Event, KeyCode, KeyEvent, KeyEventKind, KeyModifiers, MouseButton, MouseEvent, MouseEventKind,
-};
-use crossterm::queue;
-use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
-use ratatui::Terminal;
-use ratatui::backend::CrosstermBackend;
-use ratatui::layout::{Position, Size};
+use crossterm::terminal::{size, window_size};
+use ratatui::layout::Size;
 use ratatui_image::picker::ProtocolType;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGWINCH};
 use signal_hook::iterator::Signals;
 
-use super::app::{App, Flow, Pointer};
-use super::draw;
-use super::pixels::{Pixels, ask_terminal, forced};
-use super::theme::Depth;
-use crate::session::keys::Key;
+use super::app::{App, Flow};
+use super::face::Face;
+use super::pixels::ask::{Answer, Asking, CellSize, Graphics, Host};
+use super::pixels::{Pixels, tmux};
+use decode::{Decoder, Input};
 use guard::Guard;
+use screen::Screen;
 
-/// Events that may wait; held keys beyond it are dropped by the terminal's own buffer.
+/// Events that may wait; held keys beyond it wait in the terminal's own buffer.
 const QUEUE: usize = 256;
 /// Bytes of a full screen of coloured half-blocks, so that a frame is one write.
 const FRAME_BYTES: usize = 1 << 18;
@@ -62,7 +62,9 @@ pub enum Ended {
 
 /// What wakes the loop.
 enum Wake {
-    Terminal(Event),
+    Input(Input),
+    /// The screen has another size.
+    Resized,
     Signal(i32),
     /// Something was computed or encoded.
     Done,
@@ -73,40 +75,72 @@ enum Wake {
 /// Runs the face until the user quits or a signal comes. The terminal is given back in every case.
 pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
     // Before the terminal is taken over: a signal must never find it taken and nobody listening.
-    let mut signals = Signals::new([SIGTERM, SIGHUP, SIGINT])?;
+    let signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGWINCH])?;
     let guard = Guard::enter()?;
-    // The answer comes on the terminal's input, so it is asked for before anything else reads there.
-    let picker = match images {
-        _ if app.face.depth == Depth::Plain => None,
-        Images::Ask => ask_terminal(),
-        Images::HalfBlocks => None,
-        Images::Force(protocol) => Some(forced(protocol)),
-    };
+    let mut screen = Screen::whole(BufWriter::with_capacity(FRAME_BYTES, stdout()))?;
+    app.resize(screen.size()?);
     let (sender, events) = sync_channel(QUEUE);
-    if let Some(picker) = picker {
-        app.face.pixels = Some(Pixels::start(picker, waker(sender.clone()))?);
-    }
     app.session.set_waker(Box::new(waker(sender.clone())));
+
+    let host = Host::of(|name| std::env::var(name).ok(), cell_size());
+    let mut asking = None;
+    match images {
+        Images::Force(protocol) => {
+            if let Some(graphics) = host.forced(protocol) {
+                start_images(&mut app.face, graphics, &sender)?;
+            }
+        }
+        // Where there are not even colours there are no images, and some of the oldest would print the question.
+        Images::Ask if app.face.depth.has_shades() => {
+            if host.tmux {
+                tmux::let_through();
+            }
+            screen.write(&host.question())?;
+            asking = Some(Asking::new(host));
+        }
+        Images::Ask | Images::HalfBlocks => {}
+    }
+
     let handle = signals.handle();
-    let to_loop = sender.clone();
+    let for_signals = sender.clone();
     thread::Builder::new()
         .name("poescope-signals".to_owned())
-        .spawn(move || {
-            for signal in signals.forever() {
-                if to_loop.send(Wake::Signal(signal)).is_err() {
-                    return;
-                }
-            }
-        })?;
+        .spawn(move || read_signals(signals, &for_signals))?;
+    let for_input = sender.clone();
     thread::Builder::new()
         .name("poescope-input".to_owned())
-        .spawn(move || read_input(&sender))?;
+        .spawn(move || read_input(&for_input))?;
 
-    let ended = drive(app, &events);
+    let ended = drive(app, &mut screen, &events, |face, answer| {
+        let graphics = asking.as_mut().and_then(|asking| asking.take(answer));
+        graphics.map_or(Ok(false), |graphics| {
+            start_images(face, graphics, &sender).map(|()| true)
+        })
+    });
     handle.close();
-    app.face.pixels = None;
+    if let Some(mut pixels) = app.face.pixels.take() {
+        pixels.forget();
+        screen.write(&pixels.to_send())?;
+        screen.flush()?;
+    }
     drop(guard);
     ended
+}
+
+/// Has images drawn this way from now on.
+fn start_images(face: &mut Face, graphics: Graphics, sender: &SyncSender<Wake>) -> io::Result<()> {
+    face.pixels = Some(Pixels::start(graphics, waker(sender.clone()))?);
+    Ok(())
+}
+
+/// Pixels of a cell, where the terminal has told the system.
+fn cell_size() -> Option<CellSize> {
+    let window = window_size().ok()?;
+    let side = |pixels: u16, cells: u16| pixels.checked_div(cells).filter(|&side| side > 0);
+    Some((
+        side(window.width, window.columns)?,
+        side(window.height, window.rows)?,
+    ))
 }
 
 /// A full queue needs no further wake: the loop is about to run anyway.
@@ -116,22 +150,57 @@ fn waker(sender: SyncSender<Wake>) -> impl Fn() + Send + 'static {
     }
 }
 
-fn read_input(sender: &SyncSender<Wake>) {
-    loop {
-        let (wake, last) = match crossterm::event::read() {
-            Ok(event) => (Wake::Terminal(event), false),
-            Err(error) => (Wake::Closed(error), true),
+fn read_signals(mut signals: Signals, sender: &SyncSender<Wake>) {
+    for signal in signals.forever() {
+        let wake = match signal {
+            SIGWINCH => Wake::Resized,
+            signal => Wake::Signal(signal),
         };
-        if sender.send(wake).is_err() || last {
+        if sender.send(wake).is_err() {
             return;
         }
     }
 }
 
-fn drive(app: &mut App, events: &Receiver<Wake>) -> io::Result<Ended> {
-    let out = BufWriter::with_capacity(FRAME_BYTES, stdout());
-    let mut terminal = Terminal::new(CrosstermBackend::new(out))?;
-    app.resize(terminal.size()?);
+/// Reads what is typed: from standard input, or where something else is piped there from the terminal itself.
+fn read_input(sender: &SyncSender<Wake>) {
+    let error = if stdin().is_terminal() {
+        pass_on(stdin(), sender)
+    } else {
+        match File::open("/dev/tty") {
+            Ok(terminal) => pass_on(terminal, sender),
+            Err(error) => error,
+        }
+    };
+    let _ = sender.send(Wake::Closed(error));
+}
+
+/// Until the input ends; why it did.
+fn pass_on(mut terminal: impl Read, sender: &SyncSender<Wake>) -> io::Error {
+    let mut decoder = Decoder::default();
+    let mut bytes = [0; 1024];
+    loop {
+        let read = match terminal.read(&mut bytes) {
+            Ok(0) => return io::ErrorKind::UnexpectedEof.into(),
+            Ok(read) => read,
+            Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+            Err(error) => return error,
+        };
+        for input in decoder.push(&bytes[..read], read == bytes.len()) {
+            if sender.send(Wake::Input(input)).is_err() {
+                return io::ErrorKind::BrokenPipe.into();
+            }
+        }
+    }
+}
+
+/// The loop. `answered` says whether an answer of the terminal changes what is drawn.
+fn drive<W: Write>(
+    app: &mut App,
+    screen: &mut Screen<W>,
+    events: &Receiver<Wake>,
+    mut answered: impl FnMut(&mut Face, Answer) -> io::Result<bool>,
+) -> io::Result<Ended> {
     let mut changed = true;
     let mut before = Instant::now();
     loop {
@@ -142,7 +211,7 @@ fn drive(app: &mut App, events: &Receiver<Wake>) -> io::Result<Ended> {
             changed |= pixels.receive();
         }
         if std::mem::take(&mut changed) {
-            show(&mut terminal, app)?;
+            screen.show(app)?;
         }
         let first = match app.next_wake() {
             Some(soon) => match events.recv_timeout(soon) {
@@ -155,13 +224,27 @@ fn drive(app: &mut App, events: &Receiver<Wake>) -> io::Result<Ended> {
                 Err(_) => return Ok(Ended::Quit),
             },
         };
-        // Everything that has come is taken in before the next drawing, so a held key leaves nothing behind.
-        for wake in first.into_iter().chain(events.try_iter()) {
+        // Everything that has come is taken in before the next drawing, so a held key leaves nothing behind; no more
+        // than can wait, so that even an endless stream of it is drawn now and then.
+        for wake in first.into_iter().chain(events.try_iter().take(QUEUE)) {
             match wake {
-                Wake::Terminal(event) => {
+                Wake::Input(Input::Key(key)) => {
                     changed = true;
-                    if take(app, &event) == Flow::Quit {
+                    if app.press(&key) == Flow::Quit {
                         return Ok(Ended::Quit);
+                    }
+                }
+                Wake::Input(Input::Pointer(pointer, at)) => {
+                    changed = true;
+                    app.point(pointer, at);
+                }
+                Wake::Input(Input::Answer(answer)) => changed |= answered(&mut app.face, answer)?,
+                Wake::Resized => {
+                    changed = true;
+                    let (columns, rows) = size()?;
+                    app.resize(Size::new(columns, rows));
+                    if let Some(pixels) = &mut app.face.pixels {
+                        pixels.resized(cell_size());
                     }
                 }
                 Wake::Signal(signal) => return Ok(Ended::Signal(signal)),
@@ -169,117 +252,5 @@ fn drive(app: &mut App, events: &Receiver<Wake>) -> io::Result<Ended> {
                 Wake::Done => {}
             }
         }
-    }
-}
-
-fn show(
-    terminal: &mut Terminal<CrosstermBackend<BufWriter<Stdout>>>,
-    app: &mut App,
-) -> io::Result<()> {
-    let snapshot = app.session.snapshot();
-    queue!(terminal.backend_mut(), BeginSynchronizedUpdate)?;
-    terminal.draw(|frame| draw(frame, &snapshot, &app.face))?;
-    queue!(terminal.backend_mut(), EndSynchronizedUpdate)?;
-    if let Some(state) = app.to_copy.take() {
-        queue!(
-            terminal.backend_mut(),
-            CopyToClipboard::to_clipboard_from(state)
-        )?;
-    }
-    terminal.backend_mut().flush()
-}
-
-fn take(app: &mut App, event: &Event) -> Flow {
-    match event {
-        Event::Key(key) if key.kind != KeyEventKind::Release => {
-            if let Some(key) = key_of(*key) {
-                return app.press(&key);
-            }
-        }
-        Event::Mouse(mouse) => {
-            if let Some(pointer) = pointer_of(*mouse) {
-                app.point(pointer, Position::new(mouse.column, mouse.row));
-            }
-        }
-        Event::Resize(columns, rows) => app.resize(Size::new(*columns, *rows)),
-        _ => {}
-    }
-    Flow::Go
-}
-
-/// The keymap's name of a key; none for one it has no name for.
-fn key_of(event: KeyEvent) -> Option<Key> {
-    let shift = event.modifiers.contains(KeyModifiers::SHIFT);
-    let control = event.modifiers.contains(KeyModifiers::CONTROL);
-    let name = match event.code {
-        KeyCode::Char(c) if control => format!("c-{}", c.to_ascii_lowercase()),
-        KeyCode::Char(c) => return Some(Key::of_char(c)),
-        KeyCode::BackTab => "s-tab".to_owned(),
-        KeyCode::F(n) => format!("f{n}"),
-        code => {
-            let name = match code {
-                KeyCode::Left => "left",
-                KeyCode::Right => "right",
-                KeyCode::Up => "up",
-                KeyCode::Down => "down",
-                KeyCode::Home => "home",
-                KeyCode::End => "end",
-                KeyCode::PageUp => "pageup",
-                KeyCode::PageDown => "pagedown",
-                KeyCode::Tab => "tab",
-                KeyCode::Enter => "enter",
-                KeyCode::Esc => "esc",
-                KeyCode::Backspace => "backspace",
-                KeyCode::Delete => "delete",
-                _ => return None,
-            };
-            let prefix = if shift { "s-" } else { "" };
-            format!("{prefix}{name}")
-        }
-    };
-    Key::named(&name).ok()
-}
-
-fn pointer_of(event: MouseEvent) -> Option<Pointer> {
-    match event.kind {
-        MouseEventKind::Down(MouseButton::Left) => Some(Pointer::Press),
-        MouseEventKind::Drag(MouseButton::Left) => Some(Pointer::Drag),
-        MouseEventKind::Up(MouseButton::Left) => Some(Pointer::Release),
-        MouseEventKind::ScrollUp => Some(Pointer::Wheel(-1)),
-        MouseEventKind::ScrollDown => Some(Pointer::Wheel(1)),
-        _ => None,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn keys_have_the_names_of_the_keymap() {
-        let name = |code, modifiers| {
-            let key = key_of(KeyEvent::new(code, modifiers));
-            key.map(|key| key.name().to_owned())
-        };
-        let plain = KeyModifiers::NONE;
-        assert_eq!(name(KeyCode::Char('l'), plain).as_deref(), Some("l"));
-        assert_eq!(name(KeyCode::Char(' '), plain).as_deref(), Some("<space>"));
-        assert_eq!(
-            name(KeyCode::Char('G'), KeyModifiers::SHIFT).as_deref(),
-            Some("G")
-        );
-        assert_eq!(
-            name(KeyCode::Left, KeyModifiers::SHIFT).as_deref(),
-            Some("<s-left>")
-        );
-        assert_eq!(
-            name(KeyCode::BackTab, KeyModifiers::SHIFT).as_deref(),
-            Some("<s-tab>")
-        );
-        assert_eq!(
-            name(KeyCode::Char('r'), KeyModifiers::CONTROL).as_deref(),
-            Some("<c-r>")
-        );
-        assert_eq!(name(KeyCode::CapsLock, plain), None);
     }
 }
