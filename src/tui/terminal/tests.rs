@@ -48,7 +48,7 @@ fn frames(bytes: &[u8]) -> usize {
 
 fn app() -> App {
     let source = Arc::new(FakeSource::new(3));
-    let session = Session::new(source, vec![Box::new(FakePredictor::three())]);
+    let session = Session::new(source, vec![Arc::new(FakePredictor::three())]);
     let mut app = App::new(session, Face::default(), SIZE);
     assert!(app.session.wait_idle(Duration::from_secs(30)));
     app
