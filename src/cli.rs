@@ -40,6 +40,7 @@ pub enum Command {
 
 /// Arguments of `view`.
 #[derive(Clone, Debug, Default, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct ViewArgs {
     /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
     #[arg(long)]

@@ -13,6 +13,10 @@ use crate::modality::Expert;
 
 impl Session {
     /// Carries out a command whose episode is there if it needs one.
+    #[expect(
+        clippy::too_many_lines,
+        reason = "a line or two a command, none left out"
+    )]
     pub(super) fn perform(&mut self, command: Command) {
         let steps = self.opened().map_or(0, |opened| opened.steps());
         match command {

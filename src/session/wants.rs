@@ -4,6 +4,7 @@ use super::Session;
 
 /// What to compute besides beliefs, rollout and readings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[expect(clippy::struct_excessive_bools, reason = "each is wanted on its own")]
 pub struct Wants {
     /// Every set of experts at the cursor.
     pub lattice: bool,

@@ -19,6 +19,9 @@ pub trait Cache: Send + Sync {
     fn store(&self, key: &str, bytes: &[u8]);
 }
 
+/// One an episode.
+pub type ScoreList = Vec<Option<Arc<EpisodeScore>>>;
+
 #[derive(Serialize)]
 struct Written<'a> {
     version: u32,
@@ -29,7 +32,7 @@ struct Written<'a> {
 #[derive(Deserialize)]
 struct Kept {
     version: u32,
-    scores: Vec<Option<Arc<EpisodeScore>>>,
+    scores: ScoreList,
     known: Option<Known>,
 }
 
@@ -42,11 +45,7 @@ pub fn key(model: &ModelInfo, data_hash: &str) -> String {
 }
 
 /// Scores of `count` episodes and what is known; none where there is nothing of use.
-pub fn load(
-    cache: &dyn Cache,
-    key: &str,
-    count: usize,
-) -> Option<(Vec<Option<Arc<EpisodeScore>>>, Option<Known>)> {
+pub fn load(cache: &dyn Cache, key: &str, count: usize) -> Option<(ScoreList, Option<Known>)> {
     if key.is_empty() {
         return None;
     }

@@ -1,14 +1,13 @@
 //! The order of the work: what is under the cursor first, what only some views show later, all other frames last.
 
+mod extras;
+
 use std::sync::Arc;
 
 use super::answer::{Answer, Other, Pictures, Request};
-use super::lattice::Lattice;
 use super::memo::{BeliefKey, RolloutKey};
 use super::opened::Opened;
 use super::readings::{self, ReadingsKey};
-use super::response::{ResponseKey, respond};
-use super::spread::{Spread, SpreadKey};
 use super::{Stop, Worker};
 use crate::episode::{Episode, Layout};
 use crate::modality::Modality;
@@ -273,127 +272,6 @@ impl Worker {
             pictures,
             fault: None,
         });
-        Ok(())
-    }
-
-    fn lattice(
-        &mut self,
-        request: &Request,
-        look: &Look,
-        opened: &Opened,
-        answer: &mut Answer,
-    ) -> Result<(), Stop> {
-        let predictor = look.predictor.as_ref();
-        if !request.wants.lattice || !predictor.info().has_product() {
-            return Ok(());
-        }
-        let sight = &look.key.sight;
-        let Some(inferred) = self.memo.inferred(&look.key) else {
-            return Ok(());
-        };
-        if self.memo.lattices.get(sight).is_none() {
-            let Some(lattice) = Lattice::of(&inferred.trace, opened, predictor)? else {
-                return Ok(());
-            };
-            let keep = || Ok::<_, Stop>(lattice);
-            self.memo.lattices.get_or_try_insert(sight.clone(), keep)?;
-            self.check()?;
-        }
-        let Some(lattice) = self.memo.lattices.get(sight) else {
-            return Ok(());
-        };
-        let step = request.cursor.max(predictor.info().frame_stack);
-        let active: Vec<bool> = inferred
-            .belief_at(step)
-            .map(|belief| inferred.factors(belief).iter().map(|f| f.is_on()).collect())
-            .unwrap_or_default();
-        answer.lattice = lattice.at(step, &active, opened, predictor)?.map(Arc::new);
-        Ok(())
-    }
-
-    fn spread(
-        &mut self,
-        request: &Request,
-        look: &Look,
-        opened: &Opened,
-        answer: &mut Answer,
-    ) -> Result<(), Stop> {
-        let predictor = look.predictor.as_ref();
-        if !request.wants.spread || look.rollout.rollout.horizon == 0 {
-            return Ok(());
-        }
-        let Some(inferred) = self.memo.inferred(&look.key) else {
-            return Ok(());
-        };
-        let mean = RolloutKey {
-            sample: None,
-            ..look.rollout
-        };
-        let key = SpreadKey {
-            belief: look.key.clone(),
-            rollout: mean,
-            samples: request.settings.sampling.count,
-            seed: request.settings.sampling.seed,
-        };
-        self.check()?;
-        // Its picture under the cursor is what the samples' pictures are compared with.
-        self.memo
-            .roll_out(&look.key, mean, opened.steps(), predictor)?;
-        let mean_path = match self.memo.rolled_out(&look.key, mean) {
-            Some(pictured) => {
-                pictured.decode(predictor, &[request.cursor], &opened.truth)?;
-                pictured.frame(request.cursor)
-            }
-            None => None,
-        };
-        let make = || Spread::of(&key, &inferred, predictor);
-        let spread = self.memo.spreads.get_or_try_insert(key.clone(), make)?;
-        let view = spread.at(request.cursor, opened, mean_path.as_deref(), predictor)?;
-        answer.spread = Some(Arc::new(view));
-        Ok(())
-    }
-}
-
-impl Worker {
-    /// Lets each damage rise from none to all of it; the last thing that is done, for it encodes many times.
-    fn respond(
-        &mut self,
-        request: &Request,
-        look: &Look,
-        episode: &Episode,
-        opened: &Opened,
-        answer: &mut Answer,
-    ) -> Result<(), Stop> {
-        if !request.wants.response {
-            return Ok(());
-        }
-        let Some(inferred) = self.memo.inferred(&look.key) else {
-            return Ok(());
-        };
-        let mut responses = Vec::new();
-        for &damage in &look.key.sight.damage {
-            let key = ResponseKey {
-                belief: look.key.clone(),
-                modality: damage.0,
-            };
-            let view = match self.memo.responses.get(&key) {
-                Some(view) => Some(view.clone()),
-                None => {
-                    self.publish(answer);
-                    let predictor = look.predictor.as_ref();
-                    let found = respond(damage, episode, &inferred, opened, predictor, || {
-                        self.check()
-                    })?;
-                    if let Some(view) = &found {
-                        let keep = || Ok::<_, Stop>(view.clone());
-                        self.memo.responses.get_or_try_insert(key, keep)?;
-                    }
-                    found
-                }
-            };
-            responses.extend(view);
-        }
-        answer.responses = Arc::new(responses);
         Ok(())
     }
 }

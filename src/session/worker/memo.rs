@@ -40,13 +40,16 @@ pub struct Target {
     pub episode: usize,
 }
 
+/// What is wrong with each modality.
+type Damages = Vec<(Modality, Corruption)>;
+
 /// What the experts of a model look at: an episode, damaged or not.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sight {
     /// Which.
     pub target: Target,
     /// What is wrong with its modalities.
-    pub damage: Vec<(Modality, Corruption)>,
+    pub damage: Damages,
 }
 
 /// A setting of the switches over what is seen, compared bit for bit.
@@ -81,7 +84,7 @@ pub struct Believed {
 #[derive(Debug)]
 pub struct Memo {
     episodes: Lru<(usize, Layout), Arc<Episode>>,
-    damaged: Lru<(usize, Layout, Vec<(Modality, Corruption)>), Arc<Episode>>,
+    damaged: Lru<(usize, Layout, Damages), Arc<Episode>>,
     opened: Lru<Target, Arc<Opened>>,
     clean: Lru<Target, Arc<ExpertTrace>>,
     seen: Lru<(Sight, usize), Arc<GaussianTrace>>,
