@@ -133,7 +133,7 @@ impl Pixels {
         };
         let state = &mut *self.state.borrow_mut();
         match state.cache.find(key) {
-            Some(Some(Image::Kitty { id, unsent, .. })) => {
+            Some(Image::Kitty { id, unsent, .. }) => {
                 if let Some(payload) = unsent.take() {
                     let tmux = self.graphics.tmux;
                     payload.send(&mut state.outbox, id.number(), key.size, tmux);
@@ -144,11 +144,11 @@ impl Pixels {
                 state.placed.push(placed);
                 true
             }
-            Some(Some(Image::Cells(protocol))) => {
+            Some(Image::Cells(protocol)) => {
                 ratatui_image::Image::new(protocol).render(pane, buf);
                 true
             }
-            Some(None) => false,
+            Some(Image::Failed) => false,
             None => {
                 if !state.asked.contains(&key) {
                     let request = (key, raster.clone(), self.graphics);
