@@ -8,13 +8,13 @@
 //! The queue is short and a full one drops: the next drawing asks again for what is then visible.
 
 pub mod ask;
+pub mod tmux;
 
 mod cache;
 mod diacritics;
 mod encode;
 mod kitty;
 mod placeholder;
-pub mod tmux;
 
 use std::cell::RefCell;
 use std::fmt;
@@ -178,6 +178,13 @@ impl Pixels {
         let state = self.state.get_mut();
         let ids = state.cache.clear();
         state.delete(&ids, self.graphics.tmux);
+    }
+
+    /// Draws images another way from now on: the terminal has answered more.
+    pub fn change(&mut self, graphics: Graphics) {
+        // What the terminal holds was sent in the old way, so it is forgotten in it.
+        self.forget();
+        self.graphics = graphics;
     }
 
     /// The screen has another size: other cells, perhaps of other pixels, perhaps of another terminal behind tmux.

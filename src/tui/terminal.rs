@@ -131,7 +131,11 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
 
 /// Has images drawn this way from now on.
 fn start_images(face: &mut Face, graphics: Graphics, sender: &SyncSender<Wake>) -> io::Result<()> {
-    face.pixels = Some(Pixels::start(graphics, waker(sender.clone()))?);
+    if let Some(pixels) = &mut face.pixels {
+        pixels.change(graphics);
+    } else {
+        face.pixels = Some(Pixels::start(graphics, waker(sender.clone()))?);
+    }
     Ok(())
 }
 
