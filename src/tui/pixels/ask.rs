@@ -86,17 +86,18 @@ impl Host {
         })
     }
 
-    /// The questions: kitty's images, also deflated (a pixel each, not shown), the size of a cell, the attributes.
+    /// The questions: the size of a cell, kitty's images (deflated and not, a pixel each that is not shown), and the
+    /// attributes. These are asked of tmux itself: it keeps the answer of the terminal behind it.
     pub fn question(self) -> Vec<u8> {
-        let mut questions = Vec::new();
+        let mut questions = b"\x1b[16t".to_vec();
         if !self.boasts {
-            questions.extend_from_slice(b"\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\");
             questions
                 .extend_from_slice(b"\x1b_Gi=32,s=1,v=1,a=q,t=d,f=24,o=z;eJxjYGAAAAADAAE=\x1b\\");
+            questions.extend_from_slice(b"\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\");
         }
-        questions.extend_from_slice(b"\x1b[16t\x1b[c");
         let mut out = Vec::new();
         tmux::pass(&mut out, &questions, self.tmux);
+        out.extend_from_slice(b"\x1b[c");
         out
     }
 }
