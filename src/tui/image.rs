@@ -133,12 +133,13 @@ impl Raster {
             let mean = lower.map_or(upper, |lower| f32::midpoint(upper, lower));
             // A sign that the character already shows; greys stay in the terminal's own foreground.
             let end = if mean < 0.0 { BLUE } else { ORANGE };
-            let style = if self.signed {
+            let character = self.character(mean);
+            let style = if self.signed && character != ' ' {
                 depth.ink(end)
             } else {
                 Style::new()
             };
-            return (self.character(mean), style);
+            return (character, style);
         }
         let color = |value: f32| depth.color(self.rgb(value));
         let below = lower.map_or(Color::Reset, color);

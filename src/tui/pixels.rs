@@ -8,13 +8,13 @@
 //! The queue is short and a full one drops: the next drawing asks again for what is then visible.
 
 pub mod ask;
+pub mod tmux;
 
 mod cache;
 mod diacritics;
 mod encode;
 mod kitty;
 mod placeholder;
-pub mod tmux;
 
 use std::cell::RefCell;
 use std::fmt;
@@ -133,7 +133,7 @@ impl Pixels {
         };
         let state = &mut *self.state.borrow_mut();
         match state.cache.find(key) {
-            Some(Some(Image::Kitty { id, unsent, .. })) => {
+            Some(Image::Kitty { id, unsent, .. }) => {
                 if let Some(payload) = unsent.take() {
                     let tmux = self.graphics.tmux;
                     payload.send(&mut state.outbox, id.number(), key.size, tmux);
@@ -144,11 +144,11 @@ impl Pixels {
                 state.placed.push(placed);
                 true
             }
-            Some(Some(Image::Cells(protocol))) => {
+            Some(Image::Cells(protocol)) => {
                 ratatui_image::Image::new(protocol).render(pane, buf);
                 true
             }
-            Some(None) => false,
+            Some(Image::Failed) => false,
             None => {
                 if !state.asked.contains(&key) {
                     let request = (key, raster.clone(), self.graphics);
@@ -178,6 +178,13 @@ impl Pixels {
         let state = self.state.get_mut();
         let ids = state.cache.clear();
         state.delete(&ids, self.graphics.tmux);
+    }
+
+    /// Draws images another way from now on: the terminal has answered more.
+    pub fn change(&mut self, graphics: Graphics) {
+        // What the terminal holds was sent in the old way, so it is forgotten in it.
+        self.forget();
+        self.graphics = graphics;
     }
 
     /// The screen has another size: other cells, perhaps of other pixels, perhaps of another terminal behind tmux.

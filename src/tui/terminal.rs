@@ -10,12 +10,13 @@
 
 mod decode;
 mod guard;
+mod output;
 mod screen;
 #[cfg(test)]
 mod tests;
 
 use std::fs::File;
-use std::io::{self, BufWriter, IsTerminal, Read, Write, stdin, stdout};
+use std::io::{self, IsTerminal, Read, Write, stdin, stdout};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Instant;
@@ -30,14 +31,14 @@ use super::app::{App, Flow};
 use super::face::Face;
 use super::pixels::ask::{Answer, Asking, CellSize, Graphics, Host};
 use super::pixels::{Pixels, tmux};
+use super::theme::Depth;
 use decode::{Decoder, Input};
 use guard::Guard;
+use output::Output;
 use screen::Screen;
 
 /// Events that may wait; held keys beyond it wait in the terminal's own buffer.
 const QUEUE: usize = 256;
-/// Bytes of a full screen of coloured half-blocks, so that a frame is one write.
-const FRAME_BYTES: usize = 1 << 18;
 
 /// How images are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,7 +78,8 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
     // Before the terminal is taken over: a signal must never find it taken and nobody listening.
     let signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGWINCH])?;
     let guard = Guard::enter()?;
-    let mut screen = Screen::whole(BufWriter::with_capacity(FRAME_BYTES, stdout()))?;
+    let sixteen = app.face.depth == Depth::Sixteen;
+    let mut screen = Screen::whole(Output::new(stdout(), sixteen))?;
     app.resize(screen.size()?);
     let (sender, events) = sync_channel(QUEUE);
     app.session.set_waker(Box::new(waker(sender.clone())));
@@ -129,7 +131,11 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
 
 /// Has images drawn this way from now on.
 fn start_images(face: &mut Face, graphics: Graphics, sender: &SyncSender<Wake>) -> io::Result<()> {
-    face.pixels = Some(Pixels::start(graphics, waker(sender.clone()))?);
+    if let Some(pixels) = &mut face.pixels {
+        pixels.change(graphics);
+    } else {
+        face.pixels = Some(Pixels::start(graphics, waker(sender.clone()))?);
+    }
     Ok(())
 }
 

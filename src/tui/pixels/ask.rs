@@ -1,7 +1,8 @@
 //! What a terminal can show, asked of it and told by the environment.
 //!
 //! The question goes out before the first frame and nobody waits: frames are half-blocks until the answers have come,
-//! among the keys. The last question is one that every terminal answers, so after it nothing more is to come.
+//! among the keys. The last question is one that every terminal answers, so after it nothing more is to come, but from
+//! behind tmux.
 
 use ratatui_image::picker::ProtocolType;
 
@@ -85,17 +86,18 @@ impl Host {
         })
     }
 
-    /// The questions: kitty's images, also deflated (a pixel each, not shown), the size of a cell, the attributes.
+    /// The questions: the size of a cell, kitty's images (deflated and not, a pixel each that is not shown), and the
+    /// attributes. These are asked of tmux itself: it keeps the answer of the terminal behind it.
     pub fn question(self) -> Vec<u8> {
-        let mut questions = Vec::new();
+        let mut questions = b"\x1b[16t".to_vec();
         if !self.boasts {
-            questions.extend_from_slice(b"\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\");
             questions
                 .extend_from_slice(b"\x1b_Gi=32,s=1,v=1,a=q,t=d,f=24,o=z;eJxjYGAAAAADAAE=\x1b\\");
+            questions.extend_from_slice(b"\x1b_Gi=31,s=1,v=1,a=q,t=d,f=24;AAAA\x1b\\");
         }
-        questions.extend_from_slice(b"\x1b[16t\x1b[c");
         let mut out = Vec::new();
         tmux::pass(&mut out, &questions, self.tmux);
+        out.extend_from_slice(b"\x1b[c");
         out
     }
 }
@@ -108,7 +110,7 @@ pub struct Asking {
     zlib: bool,
     cell: Option<CellSize>,
     sixel: Option<bool>,
-    decided: Option<ProtocolType>,
+    decided: Option<Graphics>,
 }
 
 impl Asking {
@@ -133,28 +135,21 @@ impl Asking {
             Answer::Cell(cell) => self.cell = Some(cell),
             Answer::Attributes { sixel } => self.sixel = Some(sixel),
         }
-        let sixel = self.sixel? && !self.host.boasts;
-        let protocol = if self.kitty && !self.host.boasts {
-            ProtocolType::Kitty
-        } else if self.cell.is_none() {
-            // Both others are drawn pixel by pixel.
-            return None;
-        } else if sixel {
-            ProtocolType::Sixel
-        } else if self.host.iterm2 {
-            ProtocolType::Iterm2
-        } else {
-            return None;
+        // Both others are drawn pixel by pixel, and only once it is known that kitty's images will not be.
+        let others = self.sixel.filter(|_| self.cell.is_some());
+        let protocol = match others {
+            _ if self.kitty && !self.host.boasts => ProtocolType::Kitty,
+            Some(true) if !self.host.boasts && !self.host.tmux => ProtocolType::Sixel,
+            Some(_) if self.host.iterm2 => ProtocolType::Iterm2,
+            _ => return None,
         };
-        if self.decided.replace(protocol) == Some(protocol) {
-            return None;
-        }
-        Some(Graphics {
+        let graphics = Graphics {
             protocol,
             cell: self.cell.unwrap_or(USUAL_CELL),
             zlib: self.zlib,
             tmux: self.host.tmux,
-        })
+        };
+        (self.decided.replace(graphics) != Some(graphics)).then_some(graphics)
     }
 }
 
@@ -205,10 +200,34 @@ mod tests {
 
     #[test]
     fn an_answer_after_the_last_one_still_counts_once() {
-        let mut asking = Asking::new(Host::default());
-        assert_eq!(asking.take(ATTRIBUTES), None);
-        assert!(asking.take(Answer::Kitty).is_some());
-        assert_eq!(asking.take(Answer::Kitty), None);
+        // tmux gives its attributes before the terminal behind it has answered anything.
+        let tmux = Host {
+            tmux: true,
+            iterm2: true,
+            cell: Some((8, 16)),
+            ..Host::default()
+        };
+        let mut asking = Asking::new(tmux);
+        let mut protocol = |answer| asking.take(answer).map(|graphics| graphics.protocol);
+        let sixel = Answer::Attributes { sixel: true };
+        assert_eq!(protocol(sixel), Some(ProtocolType::Iterm2));
+        assert_eq!(protocol(Answer::Kitty), Some(ProtocolType::Kitty));
+        assert_eq!(protocol(Answer::Kitty), None);
+    }
+
+    #[test]
+    fn answers_in_another_order_come_to_the_same() {
+        let answers = [
+            Answer::Kitty,
+            Answer::KittyZlib,
+            Answer::Cell((9, 18)),
+            ATTRIBUTES,
+        ];
+        let mut backwards = answers;
+        backwards.reverse();
+        let host = Host::default();
+        assert_eq!(taken(host, &answers), taken(host, &backwards));
+        assert!(taken(host, &answers).is_some_and(|graphics| graphics.zlib));
     }
 
     #[test]
@@ -230,8 +249,8 @@ mod tests {
             tmux: true,
             ..Host::default()
         };
-        assert!(tmux.question().starts_with(b"\x1bPtmux;\x1b\x1b_G"));
-        assert!(tmux.question().ends_with(b"\x1b\x1b[c\x1b\\"));
+        assert!(tmux.question().starts_with(b"\x1bPtmux;\x1b\x1b[16t"));
+        assert!(tmux.question().ends_with(b"\x1b\x1b\\\x1b\\\x1b[c"));
     }
 
     #[test]

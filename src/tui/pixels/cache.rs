@@ -35,8 +35,10 @@ pub enum Made {
     Cells(Protocol),
 }
 
-/// An image that can be drawn.
+/// An image as it can be drawn.
 pub enum Image {
+    /// Not at all: it could not be encoded.
+    Failed,
     /// In the terminal under an id, once what is `unsent` has been sent.
     Kitty {
         /// Where its placeholders point to.
@@ -52,8 +54,7 @@ pub enum Image {
 
 struct Kept {
     key: Key,
-    /// None for an image that cannot be encoded.
-    image: Option<Image>,
+    image: Image,
     used: u64,
 }
 
@@ -76,12 +77,12 @@ impl Cache {
         }
     }
 
-    /// The image of a key, and that it is used now: nothing if it is not there, none inside if there can be none.
-    pub fn find(&mut self, key: Key) -> Option<Option<&mut Image>> {
+    /// The image of a key, which from now on is the one that was used last.
+    pub fn find(&mut self, key: Key) -> Option<&mut Image> {
         self.now += 1;
         let kept = self.kept.iter_mut().find(|kept| kept.key == key)?;
         kept.used = self.now;
-        Some(kept.image.as_mut())
+        Some(&mut kept.image)
     }
 
     /// Takes in what was made, and makes room for it; ids that the terminal is to forget.
@@ -93,17 +94,21 @@ impl Cache {
             };
             forgotten.extend(self.remove(|kept| kept.used == oldest));
         }
-        let image = made.and_then(|made| match made {
-            Made::Kitty(payload) => Some(Image::Kitty {
-                id: Id {
-                    high: self.high,
-                    color: self.free.pop_front()?,
+        let image = match made {
+            Some(Made::Kitty(payload)) => match self.free.pop_front() {
+                Some(color) => Image::Kitty {
+                    id: Id {
+                        high: self.high,
+                        color,
+                    },
+                    held: payload.held(),
+                    unsent: Some(payload),
                 },
-                held: payload.held(),
-                unsent: Some(payload),
-            }),
-            Made::Cells(protocol) => Some(Image::Cells(protocol)),
-        });
+                None => Image::Failed,
+            },
+            Some(Made::Cells(protocol)) => Image::Cells(protocol),
+            None => Image::Failed,
+        };
         self.now += 1;
         self.kept.push(Kept {
             key,
@@ -120,7 +125,7 @@ impl Cache {
 
     fn held(&self) -> usize {
         let held = |kept: &Kept| match kept.image {
-            Some(Image::Kitty { held, .. }) => held,
+            Image::Kitty { held, .. } => held,
             _ => 0,
         };
         self.kept.iter().map(held).sum()
@@ -130,7 +135,7 @@ impl Cache {
         let mut ids = Vec::new();
         self.kept.retain(|kept| {
             let goes = which(kept);
-            if let (true, Some(Image::Kitty { id, unsent, .. })) = (goes, &kept.image) {
+            if let (true, Image::Kitty { id, unsent, .. }) = (goes, &kept.image) {
                 self.free.push_back(id.color);
                 // One that was never sent cannot be forgotten.
                 ids.extend(unsent.is_none().then_some(*id));
@@ -143,8 +148,6 @@ impl Cache {
 
 #[cfg(test)]
 mod tests {
-    #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     fn key(hash: usize) -> Key {
@@ -155,14 +158,14 @@ mod tests {
         }
     }
 
-    fn made() -> Option<Made> {
-        Some(Made::Kitty(Payload::new(1, 1, &[0; 3], false)))
+    fn made() -> Made {
+        Made::Kitty(Payload::new(1, 1, &[0; 3], false))
     }
 
     /// Inserts and marks as sent.
     fn sent(cache: &mut Cache, hash: usize) -> (Id, Vec<Id>) {
-        let forgotten = cache.insert(key(hash), made());
-        let Some(Some(Image::Kitty { id, unsent, .. })) = cache.find(key(hash)) else {
+        let forgotten = cache.insert(key(hash), Some(made()));
+        let Some(Image::Kitty { id, unsent, .. }) = cache.find(key(hash)) else {
             panic!("{hash} was not kept");
         };
         assert!(unsent.take().is_some());
@@ -209,7 +212,7 @@ mod tests {
     fn what_cannot_be_encoded_is_remembered_as_such() {
         let mut cache = Cache::new(1);
         cache.insert(key(1), None);
-        assert!(cache.find(key(1)).unwrap().is_none());
+        assert!(matches!(cache.find(key(1)), Some(Image::Failed)));
         assert_eq!(cache.clear(), []);
     }
 }

@@ -20,7 +20,9 @@ pub fn encode(graphics: Graphics, raster: &Raster, cells: Size) -> Option<Made> 
         usize::from(cells.height) * usize::from(graphics.cell.1),
     ];
     if graphics.protocol == ProtocolType::Kitty {
-        let large = by_whole_factor(raster, room);
+        // Without deflating, every repeated pixel would be sent.
+        let most = if graphics.zlib { LARGEST } else { 1 };
+        let large = by_whole_factor(raster, room, most);
         let rgb: Vec<u8> = pixels(&large).flatten().collect();
         let payload = Payload::new(large.width, large.height, &rgb, graphics.zlib);
         return Some(Made::Kitty(payload));
@@ -40,12 +42,12 @@ pub fn encode(graphics: Graphics, raster: &Raster, cells: Size) -> Option<Made> 
 
 /// For a terminal that fits an image into its cells itself, smoothly. Repeated pixels deflate to almost nothing, while
 /// mixed ones, as an uneven factor makes them, treble what is sent; so the terminal does what is left.
-fn by_whole_factor(raster: &Raster, room: [usize; 2]) -> Raster {
+fn by_whole_factor(raster: &Raster, room: [usize; 2], most: usize) -> Raster {
     let factor = (room[0] / raster.width).min(room[1] / raster.height);
     if factor == 0 {
         return to_fill(raster, room);
     }
-    let factor = factor.min(LARGEST);
+    let factor = factor.min(most);
     raster.resize(raster.width * factor, raster.height * factor)
 }
 
@@ -106,7 +108,7 @@ mod tests {
     #[test]
     fn enlarging_is_by_whole_factors_where_the_terminal_does_the_rest() {
         let size = |room| {
-            let large = by_whole_factor(&raster(64, 32), room);
+            let large = by_whole_factor(&raster(64, 32), room, LARGEST);
             (large.width, large.height)
         };
         assert_eq!(size([180, 180]), (128, 64));

@@ -118,8 +118,12 @@ mod tests {
             id: Id { high: 1, color },
             area: Rect::new((u16::from(color) - 16) * 2, 0, 2, 1),
         });
-        placed.iter().for_each(|it| it.write(&mut buf));
-        placed.iter().for_each(|it| it.mark(&mut buf));
+        for it in placed {
+            it.write(&mut buf);
+        }
+        for it in placed {
+            it.mark(&mut buf);
+        }
         assert_eq!(marks(&buf, 0, 0).len(), 3);
         assert_eq!(marks(&buf, 1, 0).len(), 0);
         assert_eq!(marks(&buf, 2, 0).len(), 3);

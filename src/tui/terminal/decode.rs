@@ -61,10 +61,9 @@ impl Decoder {
 fn start(bytes: &[u8], more: bool) -> Start {
     let key = |name: &str| Start::Taken(1, named(name));
     match *bytes {
-        [] => Start::Incomplete,
         [b'\x1b'] if more => Start::Incomplete,
         [b'\x1b', b'[', ..] => control_sequence(bytes),
-        [b'\x1b', b'O'] | [b'\x1b', b'_'] => Start::Incomplete,
+        [] | [b'\x1b', b'O' | b'_'] => Start::Incomplete,
         [b'\x1b', b'O', last, ..] => match letter(last, false) {
             Some(input) => Start::Taken(3, Some(input)),
             None => key("esc"),

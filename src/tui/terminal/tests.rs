@@ -58,10 +58,6 @@ fn key(name: &str) -> Wake {
     Wake::Input(Input::Key(Key::named(name).unwrap()))
 }
 
-fn no_answers(_: &mut Face, _: Answer) -> io::Result<bool> {
-    Ok(false)
-}
-
 #[test]
 fn five_hundred_held_keys_are_two_or_three_drawings() {
     let mut app = app();
@@ -80,7 +76,7 @@ fn five_hundred_held_keys_are_two_or_three_drawings() {
         },
     };
     let mut screen = Screen::fixed(sink, SIZE).unwrap();
-    let ended = drive(&mut app, &mut screen, &events, no_answers);
+    let ended = drive(&mut app, &mut screen, &events, |_, _| Ok(false));
     assert_eq!(ended.unwrap(), Ended::Signal(SIGTERM));
     assert_eq!(app.session.snapshot().cursor, 15);
     assert!(frames(&bytes.lock().unwrap()) <= 4);
@@ -106,7 +102,7 @@ fn nothing_to_do_draws_nothing() {
         sender.send(Wake::Signal(SIGTERM)).unwrap();
     });
     let mut screen = Screen::fixed(sink, SIZE).unwrap();
-    drive(&mut app, &mut screen, &events, no_answers).unwrap();
+    drive(&mut app, &mut screen, &events, |_, _| Ok(false)).unwrap();
     wakes.join().unwrap();
     assert_eq!(frames(&bytes.lock().unwrap()), 1);
 }
