@@ -8,6 +8,7 @@
 //! computed follows, and until then the last picture stays and [`Snapshot::busy`] says so. A command that needs the
 //! length of an episode which is still being read waits for it, in order.
 
+pub mod attach;
 pub mod badge;
 pub mod command;
 pub mod fake;
@@ -47,6 +48,7 @@ use std::sync::{Arc, PoisonError};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use attach::Lines;
 use command::{Command, Scope};
 use known::Known;
 use playback::Playback;
@@ -97,7 +99,11 @@ pub struct Session {
     /// What is known of each model's latent.
     known: BTreeMap<usize, Arc<Known>>,
     board: Option<Arc<BoardView>>,
+    /// What the face that owns the session looks at.
+    own_wants: Wants,
+    /// The same with all attached ones.
     wants: Wants,
+    lines: Lines,
     /// So many failures on, once the episodes have been scored.
     awaiting_failure: Option<i64>,
     /// What waits for the episode to be read.
@@ -166,7 +172,9 @@ impl Session {
             cache: None,
             known: BTreeMap::new(),
             board: None,
+            own_wants: Wants::default(),
             wants: Wants::default(),
+            lines: Lines::default(),
             awaiting_failure: None,
             worker: None,
             target: Target {
@@ -217,6 +225,7 @@ impl Session {
     /// Lets time go by: takes in what has been computed and plays on. True if the snapshot is another one than
     /// after the last update.
     pub fn update(&mut self, dt: Duration) -> bool {
+        self.hear();
         let cursor = self.playback.cursor;
         let mut changed = self.collect();
         if let Some(opened) = self.opened().map(Arc::clone) {
@@ -402,6 +411,7 @@ impl Session {
     fn refresh(&mut self) {
         self.shown = self.show();
         self.news = true;
+        self.tell();
     }
 }
 

@@ -16,12 +16,23 @@ pub struct Wants {
     pub board: bool,
 }
 
+impl Wants {
+    /// What one of two faces wants.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            lattice: self.lattice || other.lattice,
+            spread: self.spread || other.spread,
+            response: self.response || other.response,
+            board: self.board || other.board,
+        }
+    }
+}
+
 impl Session {
     /// Says what is looked at from now on.
     pub fn want(&mut self, wants: Wants) {
-        if self.wants != wants {
-            self.wants = wants;
-            self.settle(self.playback.cursor);
-        }
+        self.own_wants = wants;
+        self.hear();
     }
 }
