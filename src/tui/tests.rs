@@ -30,6 +30,7 @@ use crate::session::snapshot::{Badge, Message, Snapshot};
 
 mod bench;
 mod rollout;
+mod scripts;
 
 const SMALL: (u16, u16) = (80, 24);
 const LARGE: (u16, u16) = (120, 40);
