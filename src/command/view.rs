@@ -73,8 +73,15 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
     if !in_terminal {
         wait(&mut app)?;
+        let snapshot = app.session.snapshot();
+        if report == Some(Report::Failures) && snapshot.table.queue.is_empty() {
+            bail!(
+                "--failures: {}",
+                snapshot.message.map_or_else(String::new, |m| m.text)
+            );
+        }
         let report = report.unwrap_or(Report::Frame);
-        return say(&report.of(app.session.snapshot(), &app.face, size)?);
+        return say(&report.of(snapshot, &app.face, size)?);
     }
     app.session.survey();
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());

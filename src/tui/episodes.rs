@@ -247,7 +247,8 @@ fn values(scores: &Scores) -> [String; 6] {
         _ => "–".to_owned(),
     };
     [
-        one(scores.error),
+        // Squared errors are summed over a frame's pixels and averaged over the horizon.
+        one(scores.error.map(f32::sqrt)),
         one(scores.distance_m.map(|metres| metres * 100.0)),
         one(scores.gain),
         one(scores.nees),

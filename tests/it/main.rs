@@ -8,6 +8,7 @@ mod damage;
 mod data;
 mod differences;
 mod errors;
+mod failures;
 mod golden;
 mod info;
 mod laws;

@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! response ─────────────── severity 0 to 1
-//! H ~noise   ▁▁▂▂▃▄▅▅▆▇█   0.4 → 2.4 cm
-//!            ▁▂▂▃▄▄▅▆▆▇█   2.0 → 11.0 NEES
-//!            █▇▇▇▆▆▆▅▅▅▅   14 → 9 % share
+//! H cm     ▁▁▂▂▃▄▅▅▆▇█  0.4 → 2.4
+//!   NEES   ▁▂▂▃▄▄▅▆▆▇█  2.0 → 11.0
+//!   share  █▇▇▇▆▆▆▅▅▅▅  14 → 9 %
 //! haptic doubts itself: under noise its share falls from 14 % to 9 %
 //! ```
 
@@ -21,9 +21,9 @@ use crate::tui::view::Pane;
 
 /// Rows of one damage: three curves and a sentence of up to two rows; the title stands above all.
 pub const ROWS: u16 = 6;
-/// Columns before the curves, and between them and their numbers.
-const NAMES: u16 = 11;
-const GAP: u16 = 2;
+/// Columns before the names of the curves, and before the curves.
+const NAMES: u16 = 2;
+const CURVES: u16 = 9;
 
 /// Draws each damage in turn, as many as there is room for.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -52,31 +52,24 @@ fn curves(buf: &mut Buffer, pane: Rect, row: u16, response: &ResponseView, face:
     let ink = face.depth.ink(response.expert.rgb());
     let letter = response.expert.letter();
     text(buf, pane, 0, row, &letter.to_string(), strong().patch(ink));
-    let badge = format!("~{}", response.damage.name());
-    text(buf, pane, 2, row, &badge, Style::new());
-    let lines: [(&[f32], f32, usize, &str); 3] = [
-        (&response.rmse_m, 100.0, 1, "cm"),
-        (&response.nees, 1.0, 1, "NEES"),
-        (&response.share, 100.0, 0, "% share"),
+    let lines: [(&str, &[f32], f32, usize, &str); 3] = [
+        ("cm", &response.rmse_m, 100.0, 1, ""),
+        ("NEES", &response.nees, 1.0, 1, ""),
+        ("share", &response.share, 100.0, 0, " %"),
     ];
-    for (i, (values, factor, decimals, unit)) in lines.into_iter().enumerate() {
+    for (i, (name, values, factor, decimals, unit)) in lines.into_iter().enumerate() {
         let row = row + i as u16;
+        text(buf, pane, NAMES, row, name, dim());
         let most = values.iter().copied().fold(0.0, f32::max);
         let curve: String = values.iter().map(|value| eighth(value / most)).collect();
-        let at = text(buf, pane, NAMES, row, &curve, ink) + GAP;
+        let at = text(buf, pane, CURVES, row, &curve, ink) + 2;
         let number = |value: Option<&f32>| match value {
             Some(value) if value.is_finite() => format!("{:.decimals$}", factor * value),
             _ => "–".to_owned(),
         };
         let (first, last) = (number(values.first()), number(values.last()));
-        text(
-            buf,
-            pane,
-            at,
-            row,
-            &format!("{first} → {last} {unit}"),
-            Style::new(),
-        );
+        let change = format!("{first} → {last}{unit}");
+        text(buf, pane, at, row, &change, Style::new());
     }
     paragraph(buf, pane, row + 3, &response.sentence, Style::new())
 }

@@ -49,6 +49,10 @@ impl Layout {
         let room = rest.height.saturating_sub(timeline + roomy);
         let least = series::rows(shape.experts) + PAIRS_ROWS;
         let middle = match room.checked_sub(least) {
+            // Damage has something to say below the KL terms.
+            Some(spare) if body.width >= 70 && shape.damaged && spare > PAIRS_ROWS => {
+                (PAIRS_ROWS + spare * 3 / 5).clamp(KL_ROWS + response::ROWS, MOST + 1)
+            }
             Some(spare) if body.width >= 70 => (PAIRS_ROWS + spare * 3 / 5).min(MOST),
             _ => 0,
         };
