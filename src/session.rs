@@ -75,6 +75,8 @@ const MOST_PENDING: usize = 1024;
 pub struct Session {
     source: Arc<dyn EpisodeSource>,
     models: Vec<Arc<ModelInfo>>,
+    /// What each episode is called in state strings: its name, with a number where an earlier one has the same.
+    episode_keys: Vec<String>,
     /// The models themselves, for the threads that compute.
     predictors: Vec<Arc<dyn Predictor>>,
     /// W of each model's position probe.
@@ -162,6 +164,7 @@ impl Session {
         let mut session = Self {
             shown: show::empty(source.as_ref(), &infos),
             models: infos,
+            episode_keys: restore::keys(source.metas().iter().map(|meta| meta.id.as_str())),
             predictors: models.clone(),
             position_weights,
             compare: None,
@@ -212,6 +215,9 @@ impl Session {
     pub fn apply(&mut self, command: Command) {
         let cursor = self.playback.cursor;
         self.message = None;
+        if goes_elsewhere(&command) {
+            self.awaiting_failure = None;
+        }
         if self.opened().is_some() || !waits_for_episode(&command) {
             self.perform(command);
         } else if !self.is_busy() {
@@ -342,7 +348,11 @@ impl Session {
         }
         let steps = answer.opened.as_ref().map(|opened| opened.steps());
         let failed = answer.done;
-        self.answer = Some(answer);
+        let before = self.answer.take();
+        self.answer = Some(match before {
+            Some(before) if before.target == answer.target => answer.after(&before),
+            _ => answer,
+        });
         if let Some(steps) = steps {
             if self.playback.cursor >= steps {
                 self.playback.seek(steps, steps);
@@ -424,6 +434,23 @@ impl Drop for Session {
             let _ = worker.join();
         }
     }
+}
+
+/// Whether a command goes to another place, so that nobody wants to be taken away from there later.
+fn goes_elsewhere(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Step(_)
+            | Command::SeekTo(_)
+            | Command::SeekClamped(_)
+            | Command::First
+            | Command::Last
+            | Command::Event(_)
+            | Command::Episode(_)
+            | Command::SelectEpisode(_)
+            | Command::SelectModel(_)
+            | Command::Restore(_)
+    )
 }
 
 /// Whether a command needs to know the episode's steps.

@@ -61,15 +61,17 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     if let Some(state) = args.state {
         app.session.apply(Command::Restore(state));
     }
+    if send(&mut app, &keys)? == Flow::Quit {
+        return Ok(());
+    }
     if let Some(order) = args.rank {
+        // What a state string says of it comes with its episode.
+        wait(&mut app)?;
         app.session.apply(Command::RankBy(order));
     }
     if report == Some(Report::Failures) {
         wait(&mut app)?;
         app.session.apply(Command::Failure(1));
-    }
-    if send(&mut app, &keys)? == Flow::Quit {
-        return Ok(());
     }
     if !in_terminal {
         wait(&mut app)?;
@@ -77,11 +79,13 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         if report == Some(Report::Failures) && snapshot.table.queue.is_empty() {
             bail!(
                 "--failures: {}",
-                snapshot.message.map_or_else(String::new, |m| m.text)
+                snapshot
+                    .message
+                    .map_or("nothing could be scored".to_owned(), |m| m.text)
             );
         }
         let report = report.unwrap_or(Report::Frame);
-        return say(&report.of(snapshot, &app.face, size)?);
+        return say(&report.of(&app.session, &app.face, size)?);
     }
     app.session.survey();
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
@@ -131,10 +135,16 @@ fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
 }
 
 fn wait(app: &mut App) -> anyhow::Result<()> {
-    if !app.session.wait_idle(PATIENCE) {
-        bail!("the model has not answered within {} s", PATIENCE.as_secs());
+    loop {
+        let scored = app.session.surveyed();
+        if app.session.wait_idle(PATIENCE) {
+            return Ok(());
+        }
+        // Scoring a large dataset takes as long as it takes.
+        if app.session.surveyed() <= scored {
+            bail!("the model has not answered within {} s", PATIENCE.as_secs());
+        }
     }
-    Ok(())
 }
 
 /// A printed frame goes to a file or a pager, which says nothing of colours, so only `NO_COLOR` counts there. What was

@@ -100,6 +100,13 @@ impl Dataset {
                 hash.hex()
             }
         };
+        if dataset.topics != Topics::default() {
+            // The same bytes read by other topics are other data.
+            let mut hash = Fnv::new();
+            hash.update(dataset.hash.as_bytes());
+            hash.update(format!("{:?}", dataset.topics).as_bytes());
+            dataset.hash = hash.hex();
+        }
         Ok(dataset)
     }
 

@@ -105,7 +105,7 @@ proptest! {
             .map(|&score| Scores { error: Some(score), gain: Some(score), ..Scores::default() })
             .collect();
         for order in Order::ALL {
-            let queue = queue(&[(0, steps.clone()), (1, Vec::new())], order);
+            let queue = queue([(0, steps.as_slice()), (1, &[][..])], order);
             prop_assert!(queue.iter().all(|&(episode, step)| episode == 0 && step < steps.len()));
         }
     }

@@ -141,14 +141,22 @@ pub fn rank(rows: &[Scores], order: Order) -> Vec<usize> {
 ///
 /// A row is an episode's index and the scores of its steps. Equal steps count by index, equal episodes as they
 /// stand in `per_episode`. An episode of which no step has a score has no worst step and is not in the queue.
-pub fn queue(per_episode: &[(usize, Vec<Scores>)], order: Order) -> Vec<(usize, usize)> {
+pub fn queue<'a>(
+    per_episode: impl IntoIterator<Item = (usize, &'a [Scores])>,
+    order: Order,
+) -> Vec<(usize, usize)> {
     let (places, worst): (Vec<(usize, usize)>, Vec<Scores>) = per_episode
-        .iter()
+        .into_iter()
         .filter_map(|(episode, steps)| {
-            let step = *rank(steps, order).first()?;
-            let scores = steps[step];
-            scores.badness(order)?;
-            Some(((*episode, step), scores))
+            let mut worst: Option<(usize, f64)> = None;
+            for (step, scores) in steps.iter().enumerate() {
+                let badness = scores.badness(order);
+                if let Some(badness) = badness.filter(|&b| worst.is_none_or(|(_, most)| b > most)) {
+                    worst = Some((step, badness));
+                }
+            }
+            let (step, _) = worst?;
+            Some(((episode, step), steps[step]))
         })
         .unzip();
     rank(&worst, order)
@@ -214,6 +222,11 @@ mod tests {
 
     #[test]
     fn the_queue_leads_to_the_worst_step_of_each_episode() {
+        fn listed(episodes: &[(usize, Vec<Scores>)]) -> impl Iterator<Item = (usize, &[Scores])> {
+            episodes
+                .iter()
+                .map(|(episode, steps)| (*episode, steps.as_slice()))
+        }
         let episodes = [
             (4, vec![error(1.0), error(2.0), error(2.0)]),
             (7, vec![Scores::default()]),
@@ -221,12 +234,15 @@ mod tests {
             (2, vec![]),
             (1, vec![error(2.0)]),
         ];
-        assert_eq!(queue(&episodes, Order::Error), [(9, 1), (4, 1), (1, 0)]);
+        assert_eq!(
+            queue(listed(&episodes), Order::Error),
+            [(9, 1), (4, 1), (1, 0)]
+        );
         let outside = [
             (0, vec![escape(None), escape(None), escape(Some(2))]),
             (1, vec![escape(None), escape(Some(1)), escape(Some(2))]),
         ];
-        assert_eq!(queue(&outside, Order::Escape), [(1, 1), (0, 2)]);
+        assert_eq!(queue(listed(&outside), Order::Escape), [(1, 1), (0, 2)]);
     }
 
     #[test]

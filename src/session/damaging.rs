@@ -2,13 +2,10 @@
 
 use super::Session;
 use super::fusing::Refusal;
-use super::settings::ControlEdit;
+use super::settings::{ControlEdit, SAMPLES, SCALES};
 use super::switches::Reach;
 use crate::measure::corruption::{Corruption, applies};
 use crate::modality::{Expert, Modality};
-
-/// More samples than this tell nothing new and take their time.
-const MOST_SAMPLES: usize = 256;
 
 impl Session {
     /// Exactly these experts as trained, in the whole episode.
@@ -60,6 +57,14 @@ impl Session {
         {
             return Err("severity and patch are numbers from 0 to 1".to_owned());
         }
+        if corruption
+            .until
+            .is_some_and(|until| until <= corruption.from)
+        {
+            return Err("damage reaches at least one step".to_owned());
+        }
+        let seed = self.settings.sampling.seed;
+        let corruption = Corruption { seed, ..corruption };
         self.settings.corruptions.insert(modality, corruption);
         let reach = match (corruption.from, corruption.until) {
             (0, None) => "in the whole episode".to_owned(),
@@ -79,16 +84,20 @@ impl Session {
             self.settings.controls = None;
             return Ok("controls as recorded".to_owned());
         };
-        if !(edit.rotate_deg.is_finite() && edit.scale.is_finite() && edit.scale.abs() <= 100.0) {
-            return Err("controls are turned and scaled by numbers".to_owned());
+        let (least, most) = (SCALES.start(), SCALES.end());
+        if !edit.rotate_deg.is_finite() || !SCALES.contains(&edit.scale) {
+            return Err(format!(
+                "controls are turned by degrees and scaled by {least} to {most}"
+            ));
         }
-        self.settings.controls = Some(edit);
+        self.settings.controls = edit.turned(0.0).unless_identity();
         Ok(format!("{}; the prediction follows them", edit.words()))
     }
 
     pub(super) fn set_samples(&mut self, count: usize) -> Result<String, Refusal> {
-        if !(2..=MOST_SAMPLES).contains(&count) {
-            return Err(format!("samples are from 2 to {MOST_SAMPLES}"));
+        if !SAMPLES.contains(&count) {
+            let (least, most) = (SAMPLES.start(), SAMPLES.end());
+            return Err(format!("samples are from {least} to {most}"));
         }
         self.settings.sampling.count = count;
         Ok(format!("{count} samples of the rollout"))

@@ -64,7 +64,11 @@ impl Session {
         };
         let event = |kind| move |&step: &usize| Event { step, kind };
         let contacts = opened.onsets.iter().map(event(EventKind::Contact));
-        let marks = self.marks.get(&opened.view.id).into_iter().flatten();
+        let key = self.episode_keys.get(self.target.episode);
+        let marks = key
+            .and_then(|key| self.marks.get(key))
+            .into_iter()
+            .flatten();
         let mut events: Vec<Event> = contacts.chain(marks.map(event(EventKind::Mark))).collect();
         events.sort_by_key(|event| (event.step, event.kind));
         Arc::new(events)
@@ -112,7 +116,7 @@ impl Session {
     /// Marks the step under the cursor, or takes its mark away.
     pub(super) fn toggle_mark(&mut self) {
         let step = self.playback.cursor;
-        let Some(id) = self.opened().map(|opened| opened.view.id.clone()) else {
+        let Some(id) = self.episode_keys.get(self.target.episode).cloned() else {
             return;
         };
         let marks = self.marks.entry(id.clone()).or_default();

@@ -19,7 +19,7 @@ impl Session {
         let (state, mut complaints) = State::parse(text);
         let mut target = self.target;
         if let Some(id) = &state.episode {
-            match self.source.metas().iter().position(|meta| meta.id == *id) {
+            match self.episode_keys.iter().position(|key| key == id) {
                 Some(episode) => target.episode = episode,
                 None => complaints.push(format!(
                     "episode: {} has none named {id:?}",
@@ -60,12 +60,9 @@ impl Session {
             settings.horizon = state.horizon.unwrap_or(settings.horizon);
             take_bench(settings, &state);
             session.take_switches(&state, &mut complaints);
-            // Where it already is may be the only place there is.
-            let context = state
-                .context
-                .filter(|&context| context != session.rollout().start + 1);
-            if let Some(Err(why)) = context.map(|context| session.set_context(context)) {
-                complaints.push(format!("context: {why}"));
+            // A wish, as the horizon is: an episode that has no room for it is shown with as much as it has.
+            if let Some(context) = state.context {
+                session.settings.context = context;
             }
             Ok("state restored".to_owned())
         });
@@ -115,10 +112,11 @@ impl Session {
         if let Some(mark) = outside.first() {
             complaints.push(format!("marks: {} is outside 1 to {steps}", mark + 1));
         }
-        let meta = self.source.metas().get(self.target.episode);
-        if let Some(meta) = meta.filter(|_| !state.marks.is_empty()) {
-            self.marks
-                .insert(meta.id.clone(), marks.into_iter().collect());
+        if let Some(key) = self.episode_keys.get(self.target.episode) {
+            // Marks are work of the user's: a string without any leaves them.
+            if !marks.is_empty() {
+                self.marks.insert(key.clone(), marks.into_iter().collect());
+            }
         }
         let last = |(first, last): (usize, Option<usize>)| last.unwrap_or(first);
         self.selection = state.selection.filter(|&selection| last(selection) < steps);
@@ -143,19 +141,33 @@ impl Session {
         }
     }
 
+    /// The state string that opens the present model at a step, from 0, of an episode, ranked as now.
+    pub fn state_at(&self, episode: usize, step: usize) -> String {
+        let state = State {
+            episode: self.episode_keys.get(episode).cloned(),
+            step: Some(step + 1),
+            model: self
+                .model()
+                .map(|_| model_key(&self.models, self.target.model)),
+            order: self.table.view().order,
+            ..State::default()
+        };
+        state.to_string()
+    }
+
     /// The state string that brings all of this back.
     pub(super) fn state(&self) -> State {
-        let meta = self.source.metas().get(self.target.episode);
-        let opened = self.opened();
-        let rollout = opened.map(|_| self.rollout());
+        let key = self.episode_keys.get(self.target.episode);
+        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let compare = self.compare.filter(|&model| model != self.target.model);
         State {
-            episode: meta.map(|meta| meta.id.clone()),
+            episode: key.cloned(),
             step: Some(self.playback.cursor + 1),
             model: self
                 .model()
                 .map(|_| model_key(&self.models, self.target.model)),
-            compare: self.compare.map(|model| model_key(&self.models, model)),
-            context: Some(rollout.map_or(self.settings.context, |rollout| rollout.start + 1)),
+            compare: compare.map(|model| model_key(&self.models, model)),
+            context: Some(self.settings.context),
             horizon: Some(self.settings.horizon),
             scope: Some(self.settings.scope),
             speed: Some(self.playback.speed()),
@@ -164,10 +176,12 @@ impl Session {
             corruptions: self.settings.corruptions.clone(),
             controls: self.settings.controls,
             sampling: self.settings.sampling,
-            marks: meta
-                .and_then(|meta| self.marks.get(&meta.id).cloned())
+            marks: key
+                .and_then(|key| self.marks.get(key).cloned())
                 .unwrap_or_default(),
-            selection: self.selection,
+            selection: self
+                .selection
+                .filter(|&(first, last)| last.unwrap_or(first) < steps),
             order: self.table.view().order,
             unknown: self.unknown_keys.clone(),
         }
@@ -179,6 +193,20 @@ fn take_bench(settings: &mut Settings, state: &State) {
     settings.corruptions.clone_from(&state.corruptions);
     settings.controls = state.controls;
     settings.sampling = state.sampling;
+}
+
+/// Names, each with a number where earlier ones are the same.
+pub(super) fn keys<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let mut seen = std::collections::BTreeMap::new();
+    let mut key = |name: &'a str| {
+        let count: &mut usize = seen.entry(name).or_default();
+        *count += 1;
+        match *count {
+            1 => name.to_owned(),
+            count => format!("{name}#{count}"),
+        }
+    };
+    names.map(&mut key).collect()
 }
 
 /// A model's name, with a number where an earlier one has the same.

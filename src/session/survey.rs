@@ -29,6 +29,10 @@ use crate::episode::{EpisodeSource, Split};
 pub const THREAD: &str = "poescope-survey";
 /// Time between two publications while it works.
 const PERIOD: Duration = Duration::from_millis(100);
+/// Results after which the scores are kept, should the program end before all are there.
+const KEPT_EVERY: usize = 256;
+/// What the experts say is kept for so many episodes; those beyond are encoded again.
+const SHEETS: usize = 4096;
 /// How long it sleeps before it looks again whether the worker is done.
 const PATIENCE: Duration = Duration::from_micros(500);
 
@@ -69,6 +73,8 @@ pub struct SurveyAnswer {
     pub known: Option<Arc<Known>>,
     /// Consistency, once measured; what there is of it until then.
     pub board: Option<Arc<BoardView>>,
+    /// Whether the board is complete.
+    pub measured: bool,
     /// Whether nothing more will come.
     pub done: bool,
 }
@@ -103,6 +109,7 @@ pub fn spawn(
                 cache,
                 worker,
                 board: None,
+                measured: false,
                 published: Instant::now(),
                 shared: Arc::clone(&shared),
             };
@@ -115,6 +122,11 @@ pub fn spawn(
 /// A newer request is there, or the session ends.
 struct Interrupted;
 
+/// Does something that may break down.
+fn guarded<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| Err("the model broke down".to_owned()))
+}
+
 /// What a model has made of the episodes.
 #[derive(Default)]
 struct Scored {
@@ -122,6 +134,8 @@ struct Scored {
     sheets: Vec<Option<Arc<Sheet>>>,
     known: Option<Arc<Known>>,
     begun: bool,
+    /// Results that came since it began.
+    new: usize,
 }
 
 struct Surveyor {
@@ -132,6 +146,8 @@ struct Surveyor {
     shared: Arc<SurveyShared>,
     scored: Vec<Scored>,
     board: Option<Arc<BoardView>>,
+    /// Whether the board is complete.
+    measured: bool,
     published: Instant,
 }
 
@@ -148,9 +164,11 @@ impl Surveyor {
 
     fn survey(&mut self, request: &SurveyRequest) -> Result<(), Interrupted> {
         self.board = None;
+        self.measured = false;
         if let Some(board) = &request.board {
             self.measure(request, board)?;
         }
+        self.measured = true;
         self.score_all(request, request.model)?;
         if let Some(vision) = request.vision.filter(|&vision| vision != request.model) {
             self.score_all(request, vision)?;
@@ -164,36 +182,58 @@ impl Surveyor {
             return Ok(());
         };
         self.begin(model, predictor.as_ref());
-        let mut new = false;
+        let before = self.scored[model].new;
+        let end = self.score_rest(request, model, predictor.as_ref());
+        if self.scored[model].new > before {
+            self.keep(model, predictor.as_ref());
+        }
+        end
+    }
+
+    fn score_rest(
+        &mut self,
+        request: &SurveyRequest,
+        model: usize,
+        predictor: &dyn Predictor,
+    ) -> Result<(), Interrupted> {
         for episode in 0..self.source.metas().len() {
             if self.scored[model].scores[episode].is_some() {
                 continue;
             }
             self.give_way()?;
-            let sheet = self.read(model, episode, predictor.as_ref());
-            let score = sheet.and_then(|sheet| score::score(&sheet, predictor.as_ref()));
+            let score = guarded(|| {
+                let sheet = self.read(model, episode, predictor)?;
+                score::score(&sheet, predictor)
+            });
             let score = score.unwrap_or_else(|fault| EpisodeScore {
                 fault: Some(fault),
                 ..EpisodeScore::default()
             });
-            self.scored[model].scores[episode] = Some(Arc::new(score));
-            new = true;
+            let scored = &mut self.scored[model];
+            scored.scores[episode] = Some(Arc::new(score));
+            scored.new += 1;
+            if scored.new.is_multiple_of(KEPT_EVERY) {
+                self.keep(model, predictor);
+            }
             self.publish_now_and_then(request);
         }
         if self.scored[model].known.is_none() {
-            self.know(model, predictor.as_ref())?;
-            new = true;
-        }
-        if new && let Some(cache) = &self.cache {
-            let scored = &self.scored[model];
-            cache::store(
-                cache.as_ref(),
-                &cache::key(predictor.info(), self.source.data_hash()),
-                &scored.scores,
-                scored.known.as_deref(),
-            );
+            self.know(model, predictor)?;
+            self.scored[model].new += 1;
         }
         Ok(())
+    }
+
+    /// Keeps what has been scored so far.
+    fn keep(&self, model: usize, predictor: &dyn Predictor) {
+        let Some(cache) = &self.cache else { return };
+        let scored = &self.scored[model];
+        cache::store(
+            cache.as_ref(),
+            &cache::key(predictor.info(), self.source.data_hash()),
+            &scored.scores,
+            scored.known.as_deref(),
+        );
     }
 
     /// Takes what the cache has of a model, once.
@@ -244,7 +284,9 @@ impl Surveyor {
             return Ok(Sheet::with(Arc::clone(&known.trace), loaded));
         }
         let sheet = Sheet::of(loaded, predictor)?;
-        *slot = Some(Arc::new(sheet.without_frames()));
+        if episode < SHEETS {
+            *slot = Some(Arc::new(sheet.without_frames()));
+        }
         Ok(sheet)
     }
 
@@ -253,9 +295,12 @@ impl Surveyor {
         let mut collected = score::Collected::default();
         for episode in 0..self.source.metas().len() {
             self.give_way()?;
-            if let Ok(sheet) = self.sheet(model, episode, predictor) {
+            // One that breaks down says so where it is scored.
+            let _ = guarded(|| {
+                let sheet = self.sheet(model, episode, predictor)?;
                 collected.take(&sheet, predictor);
-            }
+                Ok(())
+            });
         }
         self.scored[model].known = Some(Arc::new(collected.known(predictor)));
         Ok(())
@@ -281,9 +326,12 @@ impl Surveyor {
         let mut board = board::Board::new(&wanted.settings, wanted.split, episodes.len());
         for &episode in &episodes {
             self.give_way()?;
-            if let Ok(sheet) = self.sheet(request.model, episode, predictor.as_ref()) {
+            let taken = guarded(|| {
+                let sheet = self.sheet(request.model, episode, predictor.as_ref())?;
                 board.take(&sheet, predictor.as_ref());
-            } else {
+                Ok(())
+            });
+            if taken.is_err() {
                 board.leave_out();
             }
             self.board = Some(Arc::new(board.progress()));
@@ -356,7 +404,10 @@ impl Surveyor {
     }
 
     fn publish_now_and_then(&mut self, request: &SurveyRequest) {
-        if self.published.elapsed() >= PERIOD {
+        // The table is made anew each time: the more episodes, the more seldom.
+        let episodes = self.source.metas().len() as u64;
+        let period = PERIOD.max(Duration::from_micros(100 * episodes));
+        if self.published.elapsed() >= period {
             self.publish(request, false);
         }
     }
@@ -377,6 +428,7 @@ impl Surveyor {
             scores: Arc::new(scores),
             known: scored.known.clone(),
             board: self.board.clone(),
+            measured: self.measured,
             done,
         });
         self.published = Instant::now();

@@ -14,6 +14,10 @@ pub(super) struct Survey {
     thread: Option<JoinHandle<()>>,
     wanted: Option<Wanted>,
     generation: u64,
+    /// Whether the board is complete.
+    measured: bool,
+    /// Episodes scored so far.
+    scored: usize,
     done: bool,
 }
 
@@ -52,6 +56,8 @@ impl Session {
                     thread: Some(thread),
                     wanted: None,
                     generation: 0,
+                    measured: false,
+                    scored: 0,
                     done: false,
                 });
                 self.table.ask();
@@ -96,6 +102,7 @@ impl Session {
         }
         survey.generation += 1;
         survey.done = false;
+        survey.measured = false;
         survey.shared.requests.put(SurveyRequest {
             generation: survey.generation,
             model: wanted.model,
@@ -130,6 +137,8 @@ impl Session {
             return false;
         }
         survey.done = answer.done;
+        survey.measured = answer.measured;
+        survey.scored = answer.scored;
         self.table.take(&answer.scores);
         if let Some(known) = answer.known {
             self.known.insert(answer.model, known);
@@ -156,8 +165,16 @@ impl Session {
 
     /// Whether something that was asked for waits for the survey.
     pub(super) fn awaits_survey(&self) -> bool {
-        let wanted = self.awaiting_failure.is_some() || self.wants.board;
-        wanted && self.survey_runs()
+        let Some(survey) = &self.survey else {
+            return false;
+        };
+        let scores = self.awaiting_failure.is_some() && !survey.done;
+        scores || (self.wants.board && !survey.measured && !survey.done)
+    }
+
+    /// Episodes that the survey has scored so far: whoever waits for it sees that it goes on.
+    pub fn surveyed(&self) -> usize {
+        self.survey.as_ref().map_or(0, |survey| survey.scored)
     }
 
     /// Whether the survey has something to do.
@@ -183,6 +200,10 @@ impl Session {
     /// Nothing that a model's survey has found holds for the one that takes its place.
     pub(super) fn survey_anew(&mut self, model: usize, predictor: &Arc<dyn Predictor>) {
         self.known.remove(&model);
+        self.board = None;
+        if model == self.target.model {
+            self.table.take(&[]);
+        }
         let Some(survey) = &mut self.survey else {
             return;
         };

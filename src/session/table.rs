@@ -53,15 +53,17 @@ impl Table {
 
     /// Sorts by a column: the smallest first, and the other way round when asked again.
     pub fn sort_by(&mut self, column: Column) {
-        self.edit(|view| {
-            view.descending = view.sort == column && !view.descending;
-            view.sort = column;
-        });
+        let view = Arc::make_mut(&mut self.view);
+        view.descending = view.sort == column && !view.descending;
+        view.sort = column;
+        view.shown = Arc::new(shown(view));
     }
 
     /// Lists only episodes whose name or split contains this.
     pub fn filter(&mut self, text: String) {
-        self.edit(|view| view.filter = text);
+        let view = Arc::make_mut(&mut self.view);
+        view.filter = text;
+        view.shown = Arc::new(shown(view));
     }
 
     /// Ranks failures by this; the queue begins anew.
@@ -90,12 +92,15 @@ impl Table {
 
     fn edit(&mut self, change: impl FnOnce(&mut TableView)) {
         let view = Arc::make_mut(&mut self.view);
+        let gone_to = view.place.and_then(|place| view.queue.get(place).copied());
         change(view);
         view.scored = view.rows.iter().filter(|row| row.score.is_some()).count();
         view.shown = Arc::new(shown(view));
         view.queue = Arc::new(failures(view));
-        let last = view.queue.len().checked_sub(1);
-        view.place = view.place.zip(last).map(|(place, last)| place.min(last));
+        // Where more has been scored, the failure that was gone to has another place.
+        let is_it =
+            |at: &Failure| gone_to.is_some_and(|f| (f.episode, f.step) == (at.episode, at.step));
+        view.place = view.place.and_then(|_| view.queue.iter().position(is_it));
     }
 }
 
@@ -159,13 +164,12 @@ fn value(column: Column, row: &EpisodeRow) -> Option<f32> {
 }
 
 fn failures(view: &TableView) -> Vec<Failure> {
-    let scored: Vec<(usize, Vec<Scores>)> = view
-        .rows
-        .iter()
-        .enumerate()
-        .filter_map(|(episode, row)| Some((episode, row.score.as_ref()?.by_step.clone())))
-        .collect();
-    queue(&scored, view.order)
+    let scored = view.rows.iter().enumerate();
+    let scored = scored.filter_map(|(episode, row)| {
+        let score = row.score.as_ref()?;
+        Some((episode, score.by_step.as_slice()))
+    });
+    queue(scored, view.order)
         .into_iter()
         .filter_map(|(episode, step)| {
             let scores = view.rows[episode].score.as_ref()?.by_step.get(step)?;

@@ -2,32 +2,30 @@
 
 use std::fmt::Write;
 
+use crate::episode::Split;
 use crate::measure::failure::Order;
-use crate::session::snapshot::Snapshot;
+use crate::session::Session;
 
 /// A header and a line a failure, separated by tabs: rank, episode, step (from 1), split, value, and the state string
 /// that opens the tool there.
-pub fn list(snapshot: &Snapshot) -> String {
-    let table = &snapshot.table;
-    let model = snapshot.models.get(snapshot.model);
-    let name = model.map_or("", |model| model.name.as_str());
+pub fn list(session: &Session) -> String {
+    let table = session.snapshot().table;
     let mut text = format!(
         "rank\tepisode\tstep\tsplit\t{}\tstate\n",
         column(table.order)
     );
     for (rank, failure) in table.queue.iter().enumerate() {
         let row = &table.rows[failure.episode];
-        let split = row.split.map_or("", crate::episode::Split::name);
+        let split = row.split.map_or("", Split::name);
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "{}\t{}\t{}\t{split}\t{}\tv=1;episode={};step={};model={name}",
+            "{}\t{}\t{}\t{split}\t{}\t{}",
             rank + 1,
-            row.id,
+            row.id.replace(char::is_control, " "),
             failure.step + 1,
             failure.value,
-            row.id,
-            failure.step + 1,
+            session.state_at(failure.episode, failure.step),
         );
     }
     text

@@ -6,6 +6,7 @@ use anyhow::Context;
 
 use super::failures;
 use crate::cli::ViewArgs;
+use crate::session::Session;
 use crate::session::snapshot::Snapshot;
 use crate::tui::face::Face;
 use crate::tui::{plain, print};
@@ -38,12 +39,13 @@ impl Report {
     }
 
     /// Writes it.
-    pub fn of(self, snapshot: Snapshot, face: &Face, size: (u16, u16)) -> anyhow::Result<String> {
+    pub fn of(self, session: &Session, face: &Face, size: (u16, u16)) -> anyhow::Result<String> {
+        let snapshot = session.snapshot();
         match self {
             Self::Frame => Ok(print(&snapshot, face, size)),
             Self::Plain => Ok(plain(&snapshot)),
             Self::Json => json(snapshot),
-            Self::Failures => Ok(failures::list(&snapshot)),
+            Self::Failures => Ok(failures::list(session)),
         }
     }
 }
@@ -68,7 +70,6 @@ mod tests {
     use serde_json::Value;
 
     use super::*;
-    use crate::session::Session;
     use crate::session::fake::{FakePredictor, FakeSource};
 
     #[test]
@@ -77,7 +78,7 @@ mod tests {
         let mut session = Session::new(source, vec![Arc::new(FakePredictor::three())]);
         assert!(session.wait_idle(Duration::from_mins(1)));
         let report = Report::Json;
-        let text = report.of(session.snapshot(), &Face::default(), (80, 24));
+        let text = report.of(&session, &Face::default(), (80, 24));
         let text = text.unwrap();
         assert!(text.len() < 1_000_000 && text.ends_with("}\n"));
         let value: Value = serde_json::from_str(&text).unwrap();

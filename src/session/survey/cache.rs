@@ -25,7 +25,7 @@ pub type ScoreList = Vec<Option<Arc<EpisodeScore>>>;
 #[derive(Serialize)]
 struct Written<'a> {
     version: u32,
-    scores: &'a [Option<Arc<EpisodeScore>>],
+    scores: ScoreList,
     known: Option<&'a Known>,
 }
 
@@ -61,14 +61,17 @@ pub fn store(
     scores: &[Option<Arc<EpisodeScore>>],
     known: Option<&Known>,
 ) {
-    let written = Written {
-        version: VERSION,
-        scores,
-        known,
-    };
     if key.is_empty() {
         return;
     }
+    // What went wrong once may go right the next time.
+    let sound =
+        |score: &Option<Arc<EpisodeScore>>| score.clone().filter(|score| score.fault.is_none());
+    let written = Written {
+        version: VERSION,
+        scores: scores.iter().map(sound).collect(),
+        known,
+    };
     if let Ok(bytes) = serde_json::to_vec(&written) {
         cache.store(key, &bytes);
     }

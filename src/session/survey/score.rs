@@ -18,8 +18,9 @@ use crate::session::snapshot::Estimate;
 use crate::session::snapshot::table::EpisodeScore;
 use crate::session::worker::{Inferred, infer};
 
-/// Seed of the shuffle of D18.
+/// Seed of the shuffle of D18, and the most beliefs that are shuffled.
 const SHUFFLE: u64 = 0;
+const SHUFFLED: usize = 20_000;
 
 /// What the experts say of an episode, and what is true.
 #[derive(Debug)]
@@ -218,7 +219,10 @@ pub fn with_gain(
 #[derive(Default)]
 pub struct Collected {
     stats: LatentStats,
+    /// Every `stride`-th belief with its position.
     beliefs: Vec<(Vec<f32>, [f32; 2])>,
+    stride: usize,
+    seen: usize,
     episodes: usize,
 }
 
@@ -236,8 +240,25 @@ impl Collected {
             let mean = inferred.posterior(belief).mean;
             self.stats.push(mean);
             if let Some(truth) = sheet.truth_m(step) {
-                self.beliefs.push((mean.to_vec(), truth));
+                self.keep(mean, truth);
             }
+        }
+    }
+
+    /// Keeps a belief; where there are too many, every other one goes, and only every other one comes from then on.
+    fn keep(&mut self, mean: &[f32], truth_m: [f32; 2]) {
+        self.stride = self.stride.max(1);
+        if self.seen.is_multiple_of(self.stride) {
+            self.beliefs.push((mean.to_vec(), truth_m));
+        }
+        self.seen += 1;
+        if self.beliefs.len() > SHUFFLED {
+            let mut at = 0;
+            self.beliefs.retain(|_| {
+                at += 1;
+                at % 2 == 1
+            });
+            self.stride *= 2;
         }
     }
 

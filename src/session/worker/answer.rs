@@ -108,6 +108,27 @@ pub struct Other {
 }
 
 impl Answer {
+    /// The same after an earlier one of its target: what it has not come to yet is shown as it was before.
+    #[must_use]
+    pub fn after(mut self, before: &Self) -> Self {
+        if self.done {
+            return self;
+        }
+        fn keep<T: Clone>(now: &mut Option<T>, before: &Option<T>) {
+            if now.is_none() {
+                now.clone_from(before);
+            }
+        }
+        keep(&mut self.readings, &before.readings);
+        keep(&mut self.other, &before.other);
+        keep(&mut self.lattice, &before.lattice);
+        keep(&mut self.spread, &before.spread);
+        if self.responses.is_empty() {
+            self.responses = Arc::clone(&before.responses);
+        }
+        self
+    }
+
     /// Nothing yet.
     pub fn new(request: &Request) -> Self {
         Self {

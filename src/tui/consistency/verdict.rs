@@ -5,7 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::super::face::Face;
-use super::super::paint::{below_title, right, text, title, width};
+use super::super::paint::{below_title, eighth, right, text, title, width};
 use super::super::theme::{PREDICTION, dim, strong};
 use super::super::view::Pane;
 use super::super::words::sentence;
@@ -68,7 +68,7 @@ pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let both = [board.filtered.as_ref(), board.predicted.as_ref()];
     let last = board.by_head.last().filter(|_| board.by_head.len() > 1);
     let nees = [board.by_head.first(), last].map(|at| at.map(|at| at.mean));
-    let rows: [(&str, [Option<String>; 2], &str); 7] = [
+    let rows: [(&str, [Option<String>; 2], &str); 8] = [
         (
             "holds of 95 %",
             both.map(|c| {
@@ -110,6 +110,12 @@ pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             both.map(|c| c.map(|c| format!("{:.2} {:.2}", c.crps_cm[0], c.crps_cm[1]))),
             "cm",
         ),
+        // Flat where calibrated, high at the right where oversure (D12).
+        (
+            "PIT",
+            both.map(|c| c.map(|c| histogram(&c.pit))),
+            "flat is honest",
+        ),
     ];
     for (i, (name, values, note)) in rows.iter().enumerate() {
         let row = 1 + i as u16;
@@ -145,4 +151,12 @@ fn held(calibration: &Calibration) -> Option<f64> {
         .iter()
         .find(near)
         .map(|point| point.held)
+}
+
+/// Shares of ten bins as columns, a tenth each in the middle.
+fn histogram(shares: &[f64]) -> String {
+    shares
+        .iter()
+        .map(|&share| eighth((5.0 * share) as f32))
+        .collect()
 }

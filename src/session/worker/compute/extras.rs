@@ -98,7 +98,7 @@ impl Worker {
         &mut self,
         request: &Request,
         look: &Look,
-        episode: &Episode,
+        episode: &Arc<Episode>,
         opened: &Opened,
         answer: &mut Answer,
     ) -> Result<(), Stop> {
@@ -119,6 +119,12 @@ impl Worker {
                 continue;
             }
             self.publish(answer);
+            let others = look.key.sight.damage.iter().copied();
+            let others: Vec<_> = others
+                .filter(|(modality, _)| *modality != damage.0)
+                .collect();
+            let episode = self.memo.damaged(request.target.episode, episode, &others);
+            let episode = episode.as_ref();
             let predictor = look.predictor.as_ref();
             let check = || self.check();
             if let Some(view) = respond(damage, episode, &inferred, opened, predictor, check)? {
