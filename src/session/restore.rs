@@ -182,7 +182,7 @@ fn take_bench(settings: &mut Settings, state: &State) {
 }
 
 /// A model's name, with a number where an earlier one has the same.
-pub(super) fn model_key(models: &[Arc<ModelInfo>], model: usize) -> String {
+pub fn model_key(models: &[Arc<ModelInfo>], model: usize) -> String {
     let Some(info) = models.get(model) else {
         return String::new();
     };

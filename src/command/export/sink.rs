@@ -1,0 +1,45 @@
+//! The writer of each format.
+
+use std::path::Path;
+
+use anyhow::bail;
+
+use crate::cli::{ExportArgs, ExportFormat};
+use crate::data::Dataset;
+use crate::export::Sink;
+use crate::export::output::Output;
+
+/// The format that a file's ending says.
+pub(super) fn by_ending(path: &Path) -> Option<ExportFormat> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    Some(match ending.as_str() {
+        "rrd" => ExportFormat::Rrd,
+        "mcap" => ExportFormat::Mcap,
+        "csv" => ExportFormat::Csv,
+        "json" | "jsonl" | "ndjson" => ExportFormat::Json,
+        "png" => ExportFormat::Png,
+        _ => return None,
+    })
+}
+
+/// The writer of a format, with its file begun.
+pub(super) fn sink(
+    format: ExportFormat,
+    args: &ExportArgs,
+    _dataset: &Dataset,
+) -> anyhow::Result<Box<dyn Sink>> {
+    let output = Output::create(&args.out, args.force)?;
+    match format {
+        ExportFormat::Rrd => rrd(output),
+        ExportFormat::Mcap | ExportFormat::Csv | ExportFormat::Json | ExportFormat::Png => {
+            bail!("{format:?} cannot be written yet")
+        }
+    }
+}
+
+/// A recording for the Rerun viewer, where this build has it.
+fn rrd(_output: Output) -> anyhow::Result<Box<dyn Sink>> {
+    bail!(
+        "this build has no Rerun in it; build it with the feature `rerun`, which is on by default"
+    )
+}
