@@ -6,8 +6,13 @@
 //! An export is a face without keys: it sees snapshots and the vocabulary, and computes nothing of its own. One
 //! episode is in memory at a time, however many there are.
 
+pub mod color;
+pub mod csv;
 pub mod drive;
+pub mod json;
+pub mod mcap;
 pub mod output;
+pub mod step;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,7 +20,9 @@ use std::sync::Arc;
 use serde::Serialize;
 use thiserror::Error;
 
+use crate::data::DataError;
 use crate::episode::{Episode, Split};
+use crate::session::predict::Predictor;
 use crate::session::snapshot::Snapshot;
 
 /// One episode, as every model sees it.
@@ -67,6 +74,32 @@ pub struct ModelOrigin {
     pub source: String,
     /// The update of its training run, where that is known.
     pub update: Option<u64>,
+    /// How positions are read from its latent; none without a probe.
+    pub probe: Option<ProbeOrigin>,
+}
+
+/// A linear position probe: `p = W μ + b`, with the covariance `W Σ Wᵀ + R_p`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeOrigin {
+    /// W, a row of Z for x and one for y, in metres.
+    pub weights: Vec<Vec<f32>>,
+    /// b in metres.
+    pub bias: [f32; 2],
+    /// R_p as xx, xy, yy in square metres.
+    pub residual: [f32; 3],
+}
+
+impl ProbeOrigin {
+    /// That of a model.
+    pub(crate) fn of(model: &dyn Predictor) -> Option<Self> {
+        let weights = model.position_weights()?;
+        let rows = weights.chunks_exact((weights.len() / 2).max(1));
+        Some(Self {
+            weights: rows.map(<[f32]>::to_vec).collect(),
+            bias: model.position_bias()?,
+            residual: model.position_residual()?,
+        })
+    }
 }
 
 /// A format. It is given one run after the other, and then told that there are no more.
@@ -106,6 +139,9 @@ pub enum ExportError {
         /// What it said.
         cause: std::io::Error,
     },
+    /// The recording could not be read or written again.
+    #[error(transparent)]
+    Data(#[from] DataError),
     /// The format refused.
     #[error("writing {}: {what}", path.display())]
     Format {

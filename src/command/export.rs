@@ -29,7 +29,6 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let folders = open::folders(&args.model)?;
     let Opened { dataset, models } =
         open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
-    let layout = models.first().map(|model| model.layout());
     let infos: Vec<_> = models.iter().map(|m| Arc::new(m.info().clone())).collect();
     if let Some(name) = state.as_ref().and_then(|state| state.model.as_ref())
         && !(0..infos.len()).any(|model| model_key(&infos, model) == *name)
@@ -46,11 +45,11 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     };
     // Before anything is computed: an --out that cannot be written should not cost an hour.
     let mut sink = sink::sink(format, args, &dataset)?;
-    let mut session = Session::new(Arc::clone(&dataset) as _, models);
+    let mut session = Session::new(Arc::clone(&dataset) as _, models.clone());
     let mut progress = Progress::new(plan.episodes.len(), stop);
     let source = Source {
         episodes: dataset.as_ref(),
-        layout: layout.unwrap_or_default(),
+        models: &models,
     };
     drive(&mut session, source, &plan, sink.as_mut(), &mut progress)?;
     progress.finish();

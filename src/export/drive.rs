@@ -4,10 +4,11 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{DataOrigin, ExportError, ModelOrigin, Provenance, Run, Sink};
-use crate::episode::{EpisodeSource, Layout, Split};
+use super::{DataOrigin, ExportError, ModelOrigin, ProbeOrigin, Provenance, Run, Sink};
+use crate::episode::{EpisodeSource, Split};
 use crate::session::command::Command;
-use crate::session::snapshot::{ModelInfo, Snapshot};
+use crate::session::predict::Predictor;
+use crate::session::snapshot::Snapshot;
 use crate::session::state::State;
 use crate::session::{Session, model_key};
 
@@ -39,13 +40,13 @@ pub trait Onlooker {
     fn note(&mut self, text: &str);
 }
 
-/// Where the episodes come from, and the sizes they are read in.
+/// What the session was made of.
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
-    /// The same as the session's.
+    /// The episodes.
     pub episodes: &'a dyn EpisodeSource,
-    /// What the first model wants.
-    pub layout: Layout,
+    /// The models; the first one says in what sizes an episode is read.
+    pub models: &'a [Arc<dyn Predictor>],
 }
 
 /// Exports what `plan` says. The sink is yet to be finished then.
@@ -60,6 +61,8 @@ pub fn drive(
     onlooker: &mut dyn Onlooker,
 ) -> Result<(), ExportError> {
     let mut why = "no episode was asked for".to_owned();
+    let layout = source.models.first().map(|model| model.layout());
+    let layout = layout.unwrap_or_default();
     let mut provenance: Option<Arc<Provenance>> = None;
     let mut written = 0;
     for &index in &plan.episodes {
@@ -68,7 +71,7 @@ pub fn drive(
         if onlooker.stops() {
             return Err(ExportError::Stopped);
         }
-        let episode = match source.episodes.load(index, source.layout) {
+        let episode = match source.episodes.load(index, layout) {
             Ok(episode) => Arc::new(episode),
             Err(error) => {
                 why = error.to_string();
@@ -88,20 +91,19 @@ pub fn drive(
             onlooker.done();
             continue;
         }
-        let count = session.snapshot().models.len();
-        let mut models = Vec::with_capacity(count);
-        for model in 0..count {
-            models.push(shown(
-                session,
-                (index, model),
-                steps.clone(),
-                plan,
-                onlooker,
-            )?);
+        let mut models = Vec::with_capacity(source.models.len());
+        for model in 0..source.models.len() {
+            let target = (index, model);
+            models.push(shown(session, target, steps.clone(), plan, onlooker)?);
         }
         let first = models.first().and_then(|snapshots| snapshots.first());
+        let state = first.map(|snapshot| State::parse(&snapshot.state).0);
         let provenance = provenance.get_or_insert_with(|| {
-            Arc::new(provenance_of(source.episodes, session, first, plan.split))
+            Arc::new(provenance_of(
+                source,
+                &state.unwrap_or_default(),
+                plan.split,
+            ))
         });
         sink.take(&Run {
             episode,
@@ -162,11 +164,7 @@ fn settings_of(state: &State, session: &Session, episode: usize) -> State {
         compare: None,
         speed: None,
         looping: None,
-        marks: if is_own {
-            state.marks.clone()
-        } else {
-            Default::default()
-        },
+        marks: state.marks.iter().copied().filter(|_| is_own).collect(),
         selection: None,
         unknown: Vec::new(),
         ..state.clone()
@@ -184,36 +182,32 @@ fn wait(session: &mut Session, onlooker: &dyn Onlooker) -> Result<(), ExportErro
     }
 }
 
-fn provenance_of(
-    source: &dyn EpisodeSource,
-    session: &Session,
-    first: Option<&Snapshot>,
-    split: Option<Split>,
-) -> Provenance {
-    let snapshot = session.snapshot();
-    let first = first.unwrap_or(&snapshot);
-    let origin = |(i, model): (usize, &Arc<ModelInfo>)| ModelOrigin {
-        name: model_key(&first.models, i),
-        hash: model.hash.clone(),
-        source: model.source.clone(),
-        update: model.update,
-    };
-    let state = State {
-        episode: None,
-        step: None,
-        model: None,
-        compare: None,
-        ..State::parse(&first.state).0
+fn provenance_of(source: Source<'_>, state: &State, split: Option<Split>) -> Provenance {
+    let models = source.models.iter();
+    let infos: Vec<_> = models.map(|m| Arc::new(m.info().clone())).collect();
+    let origin = |(i, model): (usize, &Arc<dyn Predictor>)| ModelOrigin {
+        name: model_key(&infos, i),
+        hash: infos[i].hash.clone(),
+        source: infos[i].source.clone(),
+        update: infos[i].update,
+        probe: ProbeOrigin::of(model.as_ref()),
     };
     Provenance {
         poescope: env!("CARGO_PKG_VERSION").to_owned(),
         data: DataOrigin {
-            name: source.name().to_owned(),
-            hash: source.data_hash().to_owned(),
+            name: source.episodes.name().to_owned(),
+            hash: source.episodes.data_hash().to_owned(),
         },
-        models: first.models.iter().enumerate().map(origin).collect(),
-        state: state.to_string(),
-        seed: first.sampling.seed,
+        models: source.models.iter().enumerate().map(origin).collect(),
+        state: State {
+            episode: None,
+            step: None,
+            model: None,
+            compare: None,
+            ..state.clone()
+        }
+        .to_string(),
+        seed: state.sampling.seed,
         split,
     }
 }
@@ -266,33 +260,33 @@ mod tests {
 
     fn driven(plan: &Plan, onlooker: &mut Watched) -> (Vec<Run>, Result<(), ExportError>) {
         let source = FakeSource::new(3);
-        let mut session = Session::new(
-            Arc::new(source.clone()),
-            vec![
-                Arc::new(FakePredictor::three()),
-                Arc::new(FakePredictor::joint()),
-            ],
-        );
+        let models: Vec<Arc<dyn Predictor>> = vec![
+            Arc::new(FakePredictor::three()),
+            Arc::new(FakePredictor::joint()),
+        ];
+        let mut session = Session::new(Arc::new(source.clone()), models.clone());
         let source = Source {
             episodes: &source,
-            layout: Layout::default(),
+            models: &models,
         };
         let mut kept = Kept::default();
         let result = drive(&mut session, source, plan, &mut kept, onlooker);
         (kept.0, result)
     }
 
-    fn state(text: &str) -> Option<State> {
+    fn state(text: &str) -> State {
         let (state, complaints) = State::parse(text);
         assert_eq!(complaints, [""; 0]);
-        Some(state)
+        state
     }
 
     #[test]
     fn every_step_of_every_model_is_there_and_whole() {
         let plan = Plan {
             episodes: vec![2, 0],
-            state: state("v=1;step=3;model=vhp;alpha=haptic:0@3-,vision:0.5;context=6;seed=9"),
+            state: Some(state(
+                "v=1;step=3;model=vhp;alpha=haptic:0@3-,vision:0.5;context=6;seed=9",
+            )),
             ..Plan::default()
         };
         let mut onlooker = Watched::default();
@@ -363,7 +357,7 @@ mod tests {
     fn what_cannot_be_had_is_told_and_an_end_can_be_asked_for() {
         let plan = Plan {
             episodes: vec![7, 1],
-            state: state("v=1;alpha=vision:0,joint:0,prior:0"),
+            state: Some(state("v=1;alpha=vision:0,joint:0,prior:0")),
             ..Plan::default()
         };
         let mut onlooker = Watched::default();

@@ -1,13 +1,16 @@
 //! The writer of each format.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use anyhow::bail;
 
 use crate::cli::{ExportArgs, ExportFormat};
 use crate::data::Dataset;
 use crate::export::Sink;
-use crate::export::output::Output;
+use crate::export::csv::Tables;
+use crate::export::json::Lines;
+use crate::export::mcap::Recording;
 
 /// The format that a file's ending says.
 pub(super) fn by_ending(path: &Path) -> Option<ExportFormat> {
@@ -26,19 +29,20 @@ pub(super) fn by_ending(path: &Path) -> Option<ExportFormat> {
 pub(super) fn sink(
     format: ExportFormat,
     args: &ExportArgs,
-    _dataset: &Dataset,
+    dataset: &Arc<Dataset>,
 ) -> anyhow::Result<Box<dyn Sink>> {
-    let output = Output::create(&args.out, args.force)?;
-    match format {
-        ExportFormat::Rrd => rrd(output),
-        ExportFormat::Mcap | ExportFormat::Csv | ExportFormat::Json | ExportFormat::Png => {
-            bail!("{format:?} cannot be written yet")
-        }
-    }
+    let (out, force) = (&args.out, args.force);
+    Ok(match format {
+        ExportFormat::Rrd => return rrd(out, force),
+        ExportFormat::Csv => Box::new(Tables::create(out, force)?),
+        ExportFormat::Json => Box::new(Lines::create(out, force)?),
+        ExportFormat::Mcap => Box::new(Recording::create(out, force, Arc::clone(dataset))?),
+        ExportFormat::Png => bail!("{format:?} cannot be written yet"),
+    })
 }
 
 /// A recording for the Rerun viewer, where this build has it.
-fn rrd(_output: Output) -> anyhow::Result<Box<dyn Sink>> {
+fn rrd(_out: &Path, _force: bool) -> anyhow::Result<Box<dyn Sink>> {
     bail!(
         "this build has no Rerun in it; build it with the feature `rerun`, which is on by default"
     )
