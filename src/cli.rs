@@ -285,9 +285,28 @@ pub struct ExportArgs {
     /// Only these steps, counted from 1: `4-9`, or one
     #[arg(long, value_name = "FIRST-LAST", value_parser = parse_steps)]
     pub steps: Option<RangeInclusive<usize>>,
+    /// What a PNG shows: `strip`, a figure of truth, model and error an episode, or `sheet`, a row an episode
+    #[arg(long, value_enum, default_value_t)]
+    pub figure: Figure,
+    /// Only every K-th step in a PNG [default: so that at most 16 are shown]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
+    pub every: Option<u16>,
+    /// Each pixel of a frame becomes a square of this side in a PNG [default: 2 in a strip, 1 in a sheet]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=16))]
+    pub zoom: Option<u16>,
     /// Where the dataset has its roles.
     #[command(flatten)]
     pub mapping: TopicArgs,
+}
+
+/// What a PNG shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Figure {
+    /// Truth, model and error of every episode, as in the paper.
+    #[default]
+    Strip,
+    /// A contact sheet: truth and model of every episode.
+    Sheet,
 }
 
 /// What `export` writes.

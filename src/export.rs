@@ -12,7 +12,10 @@ pub mod drive;
 pub mod json;
 pub mod mcap;
 pub mod output;
+pub mod png;
 pub mod step;
+
+mod facts;
 
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -6,6 +6,7 @@ mod field;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+pub use self::episodes::{EXPERT_MEANS, KEYS as EPISODE_KEYS, MEANS};
 use self::field::{Fields, number};
 use super::output::Output;
 use super::step::{READINGS, Step, readings_of};
@@ -82,7 +83,7 @@ fn experts(run: &Run) -> Vec<Expert> {
 }
 
 /// What every row of steps begins with, and what it is.
-pub const KEYS: [(&str, &str); 10] = [
+pub const STEP_KEYS: [(&str, &str); 10] = [
     ("episode", "its name"),
     ("split", "`train`, `val` or `test`, where the data name one"),
     ("model", "its name; the second of the same name is `name#2`"),
@@ -103,7 +104,7 @@ pub const KEYS: [(&str, &str); 10] = [
 
 fn head(experts: &[Expert]) -> Fields {
     let mut fields = Fields::default();
-    for (name, _) in KEYS {
+    for (name, _) in STEP_KEYS {
         fields.push(name);
     }
     for reading in READINGS {

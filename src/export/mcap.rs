@@ -1,6 +1,5 @@
 //! The recording as it was, with what the models make of it beside it: standard ROS 2 messages under `/poescope/MODEL/`.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -45,7 +44,7 @@ impl Sink for Recording {
         let Some(first) = run.models.iter().flatten().next() else {
             return Ok(());
         };
-        let names = topic_names(&run.provenance);
+        let names = run.provenance.topic_names();
         let mut notes = Vec::new();
         for step in Step::of(run) {
             if let (Some(name), Some(stamp)) = (names.get(step.at.model), step.stamp_nanos()) {
@@ -59,52 +58,10 @@ impl Sink for Recording {
 
     fn finish(mut self: Box<Self>) -> Result<(), ExportError> {
         if let Some(provenance) = &self.provenance {
-            self.file.metadata(RECORD, facts(provenance))?;
+            self.file.metadata(RECORD, provenance.facts())?;
         }
         self.file.finish()?.commit()
     }
-}
-
-/// What a model's topics are named after: its name with an underscore for what ROS does not allow, each another one.
-fn topic_names(provenance: &Provenance) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for model in &provenance.models {
-        let parts = model.name.split(|c: char| !c.is_ascii_alphanumeric());
-        let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
-        let mut name = parts.join("_").to_lowercase();
-        if !name.starts_with(|c: char| c.is_ascii_lowercase()) {
-            name.insert(0, 'm');
-        }
-        while names.contains(&name) {
-            name.push('x');
-        }
-        names.push(name);
-    }
-    names
-}
-
-/// Where all of it comes from, as the strings that a record holds.
-fn facts(provenance: &Provenance) -> BTreeMap<String, String> {
-    let mut facts = BTreeMap::from([
-        ("poescope".to_owned(), provenance.poescope.clone()),
-        ("data".to_owned(), provenance.data.name.clone()),
-        ("data_hash".to_owned(), provenance.data.hash.clone()),
-        ("state".to_owned(), provenance.state.clone()),
-        ("seed".to_owned(), provenance.seed.to_string()),
-    ]);
-    if let Some(split) = provenance.split {
-        facts.insert("split".to_owned(), split.name().to_owned());
-    }
-    for (model, topic) in provenance.models.iter().zip(topic_names(provenance)) {
-        for (key, value) in [
-            ("name", model.name.clone()),
-            ("hash", model.hash.clone()),
-            ("source", model.source.clone()),
-        ] {
-            facts.insert(format!("model.{topic}.{key}"), value);
-        }
-    }
-    facts
 }
 
 /// Everything about one model at one step that is known.

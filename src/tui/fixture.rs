@@ -212,7 +212,6 @@ fn episode(steps: usize) -> EpisodeView {
 }
 
 /// The session at a step of an episode of so many.
-#[expect(clippy::too_many_lines, reason = "one field after another")]
 pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
     let (now, belief, prediction) = frames(cursor);
     let prediction = predicted(cursor).map(|_| prediction);

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use anyhow::bail;
 
-use crate::cli::{ExportArgs, ExportFormat};
+use crate::cli::{self, ExportArgs, ExportFormat};
 use crate::data::Dataset;
 use crate::export::Sink;
 use crate::export::csv::Tables;
 use crate::export::json::Lines;
 use crate::export::mcap::Recording;
+use crate::export::png::{Figure, Kind, Picture};
 
 /// The format that a file's ending says.
 pub(super) fn by_ending(path: &Path) -> Option<ExportFormat> {
@@ -37,8 +38,20 @@ pub(super) fn sink(
         ExportFormat::Csv => Box::new(Tables::create(out, force)?),
         ExportFormat::Json => Box::new(Lines::create(out, force)?),
         ExportFormat::Mcap => Box::new(Recording::create(out, force, Arc::clone(dataset))?),
-        ExportFormat::Png => bail!("{format:?} cannot be written yet"),
+        ExportFormat::Png => Box::new(Picture::create(out, force, figure(args))?),
     })
+}
+
+fn figure(args: &ExportArgs) -> Figure {
+    let (kind, zoom) = match args.figure {
+        cli::Figure::Strip => (Kind::Strip, 2),
+        cli::Figure::Sheet => (Kind::Sheet, 1),
+    };
+    Figure {
+        kind,
+        every: args.every.map(usize::from),
+        zoom: args.zoom.map_or(zoom, usize::from),
+    }
 }
 
 /// A recording for the Rerun viewer, where this build has it.
