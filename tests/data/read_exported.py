@@ -23,6 +23,11 @@ def topic_of(model):
     return "_".join("".join(c if c.isalnum() else " " for c in model).split()).lower()
 
 
+def one(number):
+    """A list of it, if it is known."""
+    return None if number is None else [number]
+
+
 def expected(line):
     """Topic and values of everything that a line of JSON and the recording both say."""
     root = f"/poescope/{topic_of(line['model'])}/"
@@ -31,10 +36,10 @@ def expected(line):
         for key in ("mean", "log_var", "share"):
             yield f"{who}/{key}", expert[key]
         for key in ("alpha", "share_mean", "share_position", "information_nats", "mahalanobis"):
-            yield f"{who}/{key}", expert[key] and [expert[key]]
+            yield f"{who}/{key}", one(expert[key])
         nis = expert["nis"] or {}
-        yield f"{who}/nis_head", nis and [nis["head"]]
-        yield f"{who}/nis_propagated", nis and nis["propagated"] and [nis["propagated"]]
+        yield f"{who}/nis_head", one(nis.get("head"))
+        yield f"{who}/nis_propagated", one(nis.get("propagated"))
     yield root + "belief/mean", line["posterior"]["mean"]
     yield root + "belief/log_var", line["posterior"]["log_var"]
     for what in ("belief", "prediction"):
@@ -42,8 +47,7 @@ def expected(line):
         yield f"{root}position/{what}", at and [at["x"], at["y"], *at["covariance"]]
         for key in ("psnr", "squared_error"):
             name = f"{key}_{what}" + ("_db" if key == "psnr" else "")
-            value = line["frames"][name]
-            yield root + name, value and [value]
+            yield root + name, one(line["frames"][name])
 
 
 def values(message):
@@ -77,7 +81,7 @@ def main(recording, lines):
         stamp = line["stamp_ns"]
         for topic, wanted in expected(line):
             has = found.get((topic, stamp))
-            if not wanted:
+            if wanted is None:
                 assert has is None, f"{topic} at {stamp}: {has} where nothing is known"
                 continue
             assert has == [single(number) for number in wanted], f"{topic} at {stamp}"
