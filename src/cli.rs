@@ -1,5 +1,6 @@
 //! The command line: the doc comments here are the help.
 
+use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
@@ -36,6 +37,8 @@ pub enum Command {
     Train(TrainArgs),
     /// Score a model's open-loop prediction against trivial predictors
     Eval(EvalArgs),
+    /// Write what a model makes of episodes as a file for other tools
+    Export(ExportArgs),
 }
 
 /// Arguments of `view`.
@@ -251,6 +254,76 @@ pub struct EvalArgs {
     pub mapping: TopicArgs,
 }
 
+/// Arguments of `export`.
+#[derive(Debug, Default, Args)]
+pub struct ExportArgs {
+    /// The file to write; an ending of .rrd, .mcap, .csv, .json, .jsonl or .png says the format
+    #[arg(long)]
+    pub out: PathBuf,
+    /// Format, where the file's ending does not say it
+    #[arg(long, value_enum)]
+    pub format: Option<ExportFormat>,
+    /// Replace a file that is there
+    #[arg(long)]
+    pub force: bool,
+    /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
+    #[arg(long)]
+    pub data: Option<PathBuf>,
+    /// Checkpoint folder; repeat for several models in one file [default: the sample model]
+    #[arg(long)]
+    pub model: Vec<PathBuf>,
+    /// State string as copied with `y`: switches, context, horizon, damage, controls; its episode and selected steps
+    /// where nothing else says them
+    #[arg(long)]
+    pub state: Option<String>,
+    /// Every episode of this split: train, val or test
+    #[arg(long, value_parser = parse_split, conflicts_with = "episode")]
+    pub split: Option<Split>,
+    /// Episode by its name; repeat for several [default: the first]
+    #[arg(long, value_name = "ID")]
+    pub episode: Vec<String>,
+    /// Only these steps, counted from 1: `4-9`, or one
+    #[arg(long, value_name = "FIRST-LAST", value_parser = parse_steps)]
+    pub steps: Option<RangeInclusive<usize>>,
+    /// What a PNG shows: `strip`, a figure of truth, model and error an episode, or `sheet`, a row an episode
+    #[arg(long, value_enum, default_value_t)]
+    pub figure: Figure,
+    /// Only every K-th step in a PNG [default: so that at most 16 are shown]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
+    pub every: Option<u16>,
+    /// Each pixel of a frame becomes a square of this side in a PNG [default: 2 in a strip, 1 in a sheet]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=16))]
+    pub zoom: Option<u16>,
+    /// Where the dataset has its roles.
+    #[command(flatten)]
+    pub mapping: TopicArgs,
+}
+
+/// What a PNG shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum Figure {
+    /// Truth, model and error of every episode, as in the paper.
+    #[default]
+    Strip,
+    /// A contact sheet: truth and model of every episode.
+    Sheet,
+}
+
+/// What `export` writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum ExportFormat {
+    /// A recording for the Rerun viewer.
+    Rrd,
+    /// The recording with beliefs, predictions and readings beside it, for Foxglove and PlotJuggler.
+    Mcap,
+    /// Two tables, of steps and of episodes.
+    Csv,
+    /// JSON Lines: every number.
+    Json,
+    /// A figure.
+    Png,
+}
+
 fn parse_size(text: &str) -> Result<(u16, u16), String> {
     let parse = || {
         let (columns, rows) = text.split_once('x')?;
@@ -298,6 +371,17 @@ fn parse_bytes(text: &str) -> Result<u64, String> {
 
 fn parse_split(text: &str) -> Result<Split, String> {
     Split::from_name(text).ok_or_else(|| format!("{text:?} is not train, val or test"))
+}
+
+/// First and last step from 1 on, as they are counted on screen.
+fn parse_steps(text: &str) -> Result<RangeInclusive<usize>, String> {
+    let parse = || {
+        let (first, last) = text.split_once('-').unwrap_or((text, text));
+        Some(first.trim().parse().ok()?..=last.trim().parse().ok()?)
+    };
+    parse()
+        .filter(|steps: &RangeInclusive<usize>| *steps.start() > 0 && !steps.is_empty())
+        .ok_or_else(|| format!("{text:?} is not FIRST-LAST, counted from 1, for example 4-9"))
 }
 
 fn parse_order(name: &str) -> Result<Order, String> {

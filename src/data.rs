@@ -8,6 +8,7 @@
 //! ```
 
 mod align;
+mod annotate;
 mod block_cache;
 mod cdr;
 mod chunk;
@@ -31,6 +32,7 @@ mod topics;
 mod write;
 
 pub use align::align;
+pub use annotate::{Annotated, Note, Value};
 pub use dataset::Dataset;
 pub use error::DataError;
 pub use report::{FileReport, LeftOut, TopicReport};

@@ -25,6 +25,7 @@ pub mod command;
 pub mod data;
 pub mod episode;
 pub mod eval;
+pub mod export;
 pub mod measure;
 pub mod modality;
 pub mod model;

@@ -54,6 +54,7 @@ use known::Known;
 use playback::Playback;
 use predict::Predictor;
 use restore::Restoration;
+pub use restore::model_key;
 use settings::{History, Sampling, Settings};
 use snapshot::board::BoardView;
 use snapshot::{Message, ModelInfo, Snapshot};

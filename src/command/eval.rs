@@ -1,12 +1,11 @@
 //! `poescope eval`: open-loop prediction of a model, horizon by horizon, beside the trivial predictors.
 
 use std::fmt::Write as _;
-use std::path::Path;
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::{sample, say};
+use super::{open, sample, say};
 use crate::cli::EvalArgs;
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -54,7 +53,11 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         );
     }
     let mut episodes = Vec::new();
-    for (index, split) in dataset.splits(seed(&folder)).into_iter().enumerate() {
+    for (index, split) in dataset
+        .splits(open::split_seed(&folder))
+        .into_iter()
+        .enumerate()
+    {
         if split != args.split {
             continue;
         }
@@ -105,13 +108,6 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         markdown(&report)
     };
     say(&text)
-}
-
-/// The seed that the model's training cut its validation split by; 0 where its report does not say.
-fn seed(folder: &Path) -> u64 {
-    let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
-    let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
-    report["seed"].as_u64().unwrap_or(0)
 }
 
 /// The report as a Markdown table.

@@ -4,8 +4,6 @@ mod finish;
 mod sets;
 mod show;
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
@@ -26,7 +24,7 @@ use crate::train::{self, Outcome, Run, metrics, statistics};
 
 /// Runs it.
 pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
-    let stop = stop_on_signals()?;
+    let stop = super::stop_on_signals()?;
     let resumed = args.resume.then(|| resume(args)).transpose()?;
     let (mut config, origin) = match &resumed {
         Some((config, origin)) => (config.clone(), Some(origin)),
@@ -112,16 +110,6 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
         Outcome::Stopped => eprintln!("stopped; go on with the same command and --resume"),
     }
     Ok(())
-}
-
-/// Ctrl-C and SIGTERM ask for a stop; the second one ends the process at once.
-fn stop_on_signals() -> anyhow::Result<Arc<AtomicBool>> {
-    let stop = Arc::new(AtomicBool::new(false));
-    for signal in [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM] {
-        signal_hook::flag::register_conditional_shutdown(signal, 130, Arc::clone(&stop))?;
-        signal_hook::flag::register(signal, Arc::clone(&stop))?;
-    }
-    Ok(stop)
 }
 
 /// What was typed, but for the program's folder.

@@ -16,16 +16,12 @@ use ratatui_image::picker::ProtocolType;
 
 use self::follow::{Follower, Watched};
 use self::report::Report;
-use super::{sample, say};
+use super::open::{self, Opened};
+use super::say;
 use crate::cli::{Colors, ImageProtocol, ViewArgs};
-use crate::data::Dataset;
-use crate::episode::EpisodeSource;
-use crate::model::checkpoint::{self, CONFIG};
-use crate::model::observation::suits;
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::keys::{Key, parse_script};
-use crate::session::predict::Predictor;
 use crate::tui::app::{App, Flow};
 use crate::tui::face::Face;
 use crate::tui::terminal::{self, Ended, Images};
@@ -99,28 +95,16 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data. The
-/// folders that training runs write to are to be watched.
+/// Opens what the arguments name. The folders that training runs write to are to be watched.
 fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
-    let path = sample::data(args.data.as_ref())?;
-    let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
-    let folders = if args.model.is_empty() {
-        vec![sample::model(None)?]
-    } else {
-        args.model.clone()
-    };
-    let mut models: Vec<Arc<dyn Predictor>> = Vec::new();
-    let mut watched = Vec::new();
-    for folder in folders {
-        watched.extend(Watched::new(models.len(), &folder));
-        models.push(follow::open(&folder)?);
-        let config = checkpoint::load_config(&folder.join(CONFIG))?;
-        // One that cannot be read says so when it is shown; the others still open.
-        if let Ok(first) = dataset.load(0, config.layout()) {
-            suits(&config, &first).with_context(|| path.display().to_string())?;
-        }
-    }
-    Ok((Session::new(Arc::new(dataset), models), watched))
+    let folders = open::folders(&args.model)?;
+    // Before the models are read: what is written meanwhile is seen.
+    let watched = folders.iter().enumerate();
+    let watched = watched.filter_map(|(model, folder)| Watched::new(model, folder));
+    let watched = watched.collect();
+    let Opened { dataset, models } =
+        open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
+    Ok((Session::new(dataset, models), watched))
 }
 
 /// Presses the keys one after the other, each once what the one before it asked for has been computed.

@@ -8,7 +8,7 @@ use super::block_cache::BlockCache;
 use super::collect::Stream;
 use super::error::DataError;
 use super::hash::Fnv;
-use super::mcap_file::McapFile;
+use super::mcap_file::{McapFile, Raw};
 use super::report::{FileReport, LeftOut, TopicReport};
 use super::split::splits;
 use super::topics::{Role, Topics};
@@ -196,6 +196,17 @@ impl Dataset {
             },
             other => other,
         })
+    }
+
+    /// Every message of episode `index` as it was recorded, by log time, with the file that it is from.
+    pub(super) fn messages(&self, index: usize) -> Result<(&McapFile, Vec<Raw>), DataError> {
+        let (file, meta) = self.episode(index)?;
+        Ok((file, file.messages(meta, &self.cache)?))
+    }
+
+    /// What the file says of episode `index`.
+    pub(super) fn meta(&self, index: usize) -> Result<&EpisodeMeta, DataError> {
+        self.episode(index).map(|(_, meta)| meta)
     }
 
     fn episode(&self, index: usize) -> Result<(&McapFile, &EpisodeMeta), DataError> {

@@ -21,6 +21,8 @@ pub(super) struct Channel {
     pub(super) topic: String,
     pub(super) encoding: String,
     pub(super) schema_id: u16,
+    /// What else its record says, like the quality of service it was offered with.
+    pub(super) metadata: BTreeMap<String, String>,
 }
 
 /// A stretch of the data section that is read at once: a chunk record, or a run of plain messages.
@@ -96,6 +98,7 @@ impl Index {
                     topic: channel.topic,
                     encoding: channel.message_encoding,
                     schema_id: channel.schema_id,
+                    metadata: channel.metadata,
                 };
                 self.channels.insert(channel.id, kept);
             }

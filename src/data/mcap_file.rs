@@ -3,17 +3,19 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use mcap::MAGIC;
-use mcap::records::{Record, op};
+use mcap::records::{MessageHeader, Record, op};
 
 use super::block_cache::BlockCache;
 use super::chunk::{parse, unpack};
 use super::collect::{Collector, Stream};
 use super::error::DataError;
 use super::index::{Index, Span};
-use super::record::{LENGTH_LIMIT, Records, split_message};
+use super::record::{LENGTH_LIMIT, Records, split_message, split_whole_message};
 use super::report::LeftOut;
 use super::topics::{Role, Topics};
 use super::{scan, streams, summary};
@@ -22,13 +24,27 @@ use crate::episode::{EpisodeMeta, Recording};
 /// A file whose messages are read by seeking, one episode at a time.
 #[derive(Debug)]
 pub(super) struct McapFile {
-    /// Its number in the dataset, for the cache.
-    number: usize,
+    /// Its number in the dataset.
+    pub(super) number: usize,
     pub(super) path: PathBuf,
     pub(super) index: Index,
     /// The channels that can be read.
     pub(super) streams: BTreeMap<u16, Stream>,
     pub(super) left_out: Vec<LeftOut>,
+}
+
+/// One message as it was recorded; it shares the block that it was unpacked with.
+#[derive(Clone, Debug)]
+pub(super) struct Raw {
+    pub(super) header: MessageHeader,
+    block: Arc<Vec<u8>>,
+    payload: Range<usize>,
+}
+
+impl Raw {
+    pub(super) fn payload(&self) -> &[u8] {
+        self.block.get(self.payload.clone()).unwrap_or_default()
+    }
 }
 
 impl McapFile {
@@ -158,6 +174,42 @@ impl McapFile {
             })?;
         }
         Ok(collector.finish(meta.clone()))
+    }
+
+    /// Every message of one episode as it was recorded, whether it can be read or not, by log time; in the order of the
+    /// file where that is equal.
+    pub(super) fn messages(
+        &self,
+        meta: &EpisodeMeta,
+        cache: &BlockCache,
+    ) -> Result<Vec<Raw>, DataError> {
+        let mut file = File::open(&self.path).map_err(DataError::io(&self.path))?;
+        let (start, end) = log_range(meta);
+        let mut messages = Vec::new();
+        for span in self.spans_of(meta) {
+            let block = cache.get((self.number, span.offset), || {
+                self.read_span(&mut file, span)
+            })?;
+            for record in Records::new(&block) {
+                let (opcode, body) = record.map_err(|what| self.damaged(span.offset, what))?;
+                if opcode != op::MESSAGE {
+                    continue;
+                }
+                let Some((header, payload)) = split_whole_message(body) else {
+                    return Err(self.damaged(span.offset, "a message without a head".to_owned()));
+                };
+                if (start..=end).contains(&header.log_time) {
+                    let until = payload.as_ptr_range().end.addr() - block.as_ptr().addr();
+                    messages.push(Raw {
+                        header,
+                        payload: until - payload.len()..until,
+                        block: Arc::clone(&block),
+                    });
+                }
+            }
+        }
+        messages.sort_by_key(|message| message.header.log_time);
+        Ok(messages)
     }
 
     /// How many images each of `metas` has, exactly: by the message indexes where there are some, else by reading

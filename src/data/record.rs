@@ -1,5 +1,7 @@
 //! MCAP's framing: a record is an opcode, eight bytes of length, and a body.
 
+use mcap::records::MessageHeader;
+
 /// Opcode and length.
 pub(super) const HEAD: usize = 9;
 
@@ -17,6 +19,21 @@ pub(super) fn put_record(bytes: &mut Vec<u8>, opcode: u8, body: &[u8]) {
     bytes.push(opcode);
     bytes.extend_from_slice(&(body.len() as u64).to_le_bytes());
     bytes.extend_from_slice(body);
+}
+
+/// All of a message.
+pub(super) fn split_whole_message(body: &[u8]) -> Option<(MessageHeader, &[u8])> {
+    let (channel, rest) = body.split_first_chunk::<2>()?;
+    let (sequence, rest) = rest.split_first_chunk::<4>()?;
+    let (log_time, rest) = rest.split_first_chunk::<8>()?;
+    let (publish_time, payload) = rest.split_first_chunk::<8>()?;
+    let header = MessageHeader {
+        channel_id: u16::from_le_bytes(*channel),
+        sequence: u32::from_le_bytes(*sequence),
+        log_time: u64::from_le_bytes(*log_time),
+        publish_time: u64::from_le_bytes(*publish_time),
+    };
+    Some((header, payload))
 }
 
 /// The head of a message: channel, log time, payload. Read here by hand, since a chunk holds tens of thousands and

@@ -17,7 +17,7 @@ use super::topics::{Role, Topics};
 use crate::episode::{EpisodeMeta, Frame, Recording, Split};
 
 /// Reliable and keeping the last ten, as `ros2 topic` offers by default.
-const QOS: &str = "- history: keep_last\n  depth: 10\n  reliability: reliable\n  durability: volatile\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: automatic\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false";
+pub(super) const QOS: &str = "- history: keep_last\n  depth: 10\n  reliability: reliable\n  durability: volatile\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: automatic\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false";
 
 /// Writes recordings into one file, which appears when it is finished: until then it has another name.
 ///
@@ -46,14 +46,7 @@ impl DatasetWriter {
             .to_string_lossy();
         let temporary = path.with_file_name(format!(".{name}.{}.partial", std::process::id()));
         let file = File::create(&temporary).map_err(DataError::io(path))?;
-        // One thread, so that the bytes depend on nothing but the data.
-        let writer = WriteOptions::new()
-            .profile("ros2")
-            .library(concat!("poescope ", env!("CARGO_PKG_VERSION")))
-            .compression(Some(Compression::Zstd))
-            .compression_threads(0)
-            .chunk_size(Some(1 << 20))
-            .create(BufWriter::new(file));
+        let writer = options().create(BufWriter::new(file));
         let mut created = Self {
             path: path.to_owned(),
             temporary,
@@ -172,7 +165,17 @@ impl Drop for DatasetWriter {
     }
 }
 
-fn write_error(path: &Path) -> impl Fn(McapError) -> DataError + use<> {
+/// What files are written with: one thread, so that the bytes depend on nothing but the data.
+pub(super) fn options() -> WriteOptions {
+    WriteOptions::new()
+        .profile("ros2")
+        .library(concat!("poescope ", env!("CARGO_PKG_VERSION")))
+        .compression(Some(Compression::Zstd))
+        .compression_threads(0)
+        .chunk_size(Some(1 << 20))
+}
+
+pub(super) fn write_error(path: &Path) -> impl Fn(McapError) -> DataError + use<> {
     let path = path.to_owned();
     move |cause| DataError::Write {
         path: path.clone(),
@@ -180,7 +183,11 @@ fn write_error(path: &Path) -> impl Fn(McapError) -> DataError + use<> {
     }
 }
 
-fn entries(meta: &EpisodeMeta, start_nanos: i64, end_nanos: i64) -> BTreeMap<String, String> {
+pub(super) fn entries(
+    meta: &EpisodeMeta,
+    start_nanos: i64,
+    end_nanos: i64,
+) -> BTreeMap<String, String> {
     let known = [
         ("id", Some(meta.id.clone())),
         ("start_ns", Some(start_nanos.to_string())),
@@ -249,7 +256,7 @@ fn stamped<T: Serialize>(
     encode(&Stamped { header, value }, payload)
 }
 
-fn image<'a>(header: Header<'a>, frame: &'a Frame) -> Image<'a> {
+pub(super) fn image<'a>(header: Header<'a>, frame: &'a Frame) -> Image<'a> {
     Image {
         header,
         height: frame.height as u32,

@@ -210,7 +210,7 @@ pub(super) fn keys<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
 }
 
 /// A model's name, with a number where an earlier one has the same.
-pub(super) fn model_key(models: &[Arc<ModelInfo>], model: usize) -> String {
+pub fn model_key(models: &[Arc<ModelInfo>], model: usize) -> String {
     let Some(info) = models.get(model) else {
         return String::new();
     };

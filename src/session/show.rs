@@ -233,6 +233,7 @@ fn latent_view((mean, log_var): (&[f32], &[f32])) -> LatentView {
     LatentView {
         mean: mean.to_vec(),
         sigma: log_var.iter().map(|v| (0.5 * v).exp()).collect(),
+        log_var: log_var.to_vec(),
     }
 }
 

@@ -176,6 +176,8 @@ pub struct LatentView {
     pub mean: Vec<f32>,
     /// Standard deviations.
     pub sigma: Vec<f32>,
+    /// Logarithms of the variances, as the model states them.
+    pub log_var: Vec<f32>,
 }
 
 /// Whether the switches at the cursor were in the model's training.

@@ -93,16 +93,20 @@ fn expert(expert: Expert, weight: f32, steps: usize) -> ExpertView {
     ExpertView {
         expert,
         alpha: 1.0,
-        latent: Some(LatentView {
-            mean: (0..DIMS).map(|d| 2.0 * noise(seed + d) - 1.0).collect(),
-            sigma: (0..DIMS)
-                .map(|d| 0.2 + 0.6 * noise(seed + d + 50))
-                .collect(),
-        }),
+        latent: Some(latent(seed, |noise| 0.2 + 0.6 * noise)),
         share_position: Some(share[0]),
         share_mean,
         share,
         share_over_time: Arc::new(over_time.collect()),
+    }
+}
+
+fn latent(seed: usize, sigma: impl Fn(f32) -> f32) -> LatentView {
+    let sigma: Vec<f32> = (0..DIMS).map(|d| sigma(noise(seed + d + 50))).collect();
+    LatentView {
+        mean: (0..DIMS).map(|d| 2.0 * noise(seed + d) - 1.0).collect(),
+        log_var: sigma.iter().map(|sigma| 2.0 * sigma.ln()).collect(),
+        sigma,
     }
 }
 
@@ -208,7 +212,6 @@ fn episode(steps: usize) -> EpisodeView {
 }
 
 /// The session at a step of an episode of so many.
-#[expect(clippy::too_many_lines, reason = "one field after another")]
 pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
     let (now, belief, prediction) = frames(cursor);
     let prediction = predicted(cursor).map(|_| prediction);
@@ -273,10 +276,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
         },
         strip: Arc::new(strip.collect()),
         position: Some(position(cursor, steps)),
-        belief: (cursor > 0).then(|| LatentView {
-            mean: (0..DIMS).map(|d| 2.0 * noise(d) - 1.0).collect(),
-            sigma: (0..DIMS).map(|d| 0.1 + 0.3 * noise(d + 50)).collect(),
-        }),
+        belief: (cursor > 0).then(|| latent(0, |noise| 0.1 + 0.3 * noise)),
         psnr_db: Arc::new(
             (0..steps)
                 .map(|t| StepPsnr {

@@ -2,16 +2,14 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, SystemTime};
 
+use crate::command::open;
 use crate::model::checkpoint::{self, CONFIG, PROBE, WEIGHTS};
 use crate::session::Found;
-use crate::session::predict::Predictor;
 use crate::session::renew::Renewal;
-use crate::session::trained::{Origin, Trained};
 
 /// Time between two looks at the files.
 pub const PERIOD: Duration = Duration::from_secs(2);
@@ -47,7 +45,7 @@ impl Watched {
         }
         // Before reading: what is written meanwhile is for the next look.
         self.stamp = stamp;
-        Some(open(&self.folder).map_err(|error| format!("{error:#}")))
+        Some(open::model(&self.folder).map_err(|error| format!("{error:#}")))
     }
 }
 
@@ -56,18 +54,6 @@ fn stamp(folder: &Path) -> Stamp {
         let metadata = std::fs::metadata(folder.join(file)).ok()?;
         Some((metadata.modified().ok()?, metadata.len()))
     })
-}
-
-/// The model of a checkpoint folder, for a session.
-pub fn open(folder: &Path) -> anyhow::Result<Arc<dyn Predictor>> {
-    let update = checkpoint::update_of(folder);
-    let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
-    let origin = Origin {
-        source: folder.display().to_string(),
-        update,
-        hash,
-    };
-    Ok(Arc::new(Trained::new(model, probe, origin)?))
 }
 
 /// Watches until it is dropped.
@@ -109,6 +95,8 @@ fn follow(watched: &mut [Watched], period: Duration, renewal: &Renewal, ended: &
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
 
+    use std::sync::Arc;
+
     use candle_core::{DType, Device};
 
     use super::*;
@@ -132,7 +120,7 @@ mod tests {
         let watched = Watched::new(0, run.path()).unwrap();
         let mut session = Session::new(
             Arc::new(FakeSource::new(3)),
-            vec![open(run.path()).unwrap()],
+            vec![open::model(run.path()).unwrap()],
         );
         let (wake, woken) = sync_channel(64);
         session.set_waker(Box::new(move || wake.try_send(()).unwrap_or_default()));

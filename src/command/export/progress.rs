@@ -1,0 +1,54 @@
+//! What the user sees of an export while it runs, and how it is stopped.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use indicatif::{ProgressBar, ProgressStyle};
+
+use crate::export::drive::Onlooker;
+
+/// A bar on standard error, where that is a terminal.
+pub(super) struct Progress {
+    bar: ProgressBar,
+    stop: Arc<AtomicBool>,
+}
+
+impl Progress {
+    /// Of so many episodes; `stop` is set by a signal.
+    pub(super) fn new(episodes: usize, stop: Arc<AtomicBool>) -> Self {
+        let template = "{bar:30} {pos}/{len} episodes, {eta} left: {msg}";
+        let style = ProgressStyle::with_template(template);
+        let bar = ProgressBar::new(episodes as u64);
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        Self { bar, stop }
+    }
+
+    /// The episodes are written; what is left is to close the file.
+    pub(super) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Onlooker for Progress {
+    fn stops(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    fn begins(&mut self, episode: &str) {
+        self.bar.set_message(episode.to_owned());
+    }
+
+    fn done(&mut self) {
+        self.bar.inc(1);
+    }
+
+    fn note(&mut self, text: &str) {
+        self.bar.suspend(|| eprintln!("poescope: {text}"));
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,62 @@
+//! The writer of each format.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use anyhow::bail;
+
+use crate::cli::{self, ExportArgs, ExportFormat};
+use crate::data::Dataset;
+use crate::export::Sink;
+use crate::export::csv::Tables;
+use crate::export::json::Lines;
+use crate::export::mcap::Recording;
+use crate::export::png::{Figure, Kind, Picture};
+
+/// The format that a file's ending says.
+pub(super) fn by_ending(path: &Path) -> Option<ExportFormat> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    Some(match ending.as_str() {
+        "rrd" => ExportFormat::Rrd,
+        "mcap" => ExportFormat::Mcap,
+        "csv" => ExportFormat::Csv,
+        "json" | "jsonl" | "ndjson" => ExportFormat::Json,
+        "png" => ExportFormat::Png,
+        _ => return None,
+    })
+}
+
+/// The writer of a format, with its file begun.
+pub(super) fn sink(
+    format: ExportFormat,
+    args: &ExportArgs,
+    dataset: &Arc<Dataset>,
+) -> anyhow::Result<Box<dyn Sink>> {
+    let (out, force) = (&args.out, args.force);
+    Ok(match format {
+        ExportFormat::Rrd => return rrd(out, force),
+        ExportFormat::Csv => Box::new(Tables::create(out, force)?),
+        ExportFormat::Json => Box::new(Lines::create(out, force)?),
+        ExportFormat::Mcap => Box::new(Recording::create(out, force, Arc::clone(dataset))?),
+        ExportFormat::Png => Box::new(Picture::create(out, force, figure(args))?),
+    })
+}
+
+fn figure(args: &ExportArgs) -> Figure {
+    let (kind, zoom) = match args.figure {
+        cli::Figure::Strip => (Kind::Strip, 2),
+        cli::Figure::Sheet => (Kind::Sheet, 1),
+    };
+    Figure {
+        kind,
+        every: args.every.map(usize::from),
+        zoom: args.zoom.map_or(zoom, usize::from),
+    }
+}
+
+/// A recording for the Rerun viewer, where this build has it.
+fn rrd(_out: &Path, _force: bool) -> anyhow::Result<Box<dyn Sink>> {
+    bail!(
+        "this build has no Rerun in it; build it with the feature `rerun`, which is on by default"
+    )
+}

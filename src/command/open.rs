@@ -1,0 +1,72 @@
+//! Opens a dataset and models by their names on the command line, for whatever shows them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::Context;
+
+use super::sample;
+use crate::data::{Dataset, Role};
+use crate::model::checkpoint::{self, CONFIG};
+use crate::model::observation::suits;
+use crate::session::predict::Predictor;
+use crate::session::trained::{Origin, Trained};
+
+/// The checkpoint folders that were asked for, else the sample model's.
+pub fn folders(asked: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    if asked.is_empty() {
+        return Ok(vec![sample::model(None)?]);
+    }
+    Ok(asked.to_vec())
+}
+
+/// A dataset and models that suit it.
+pub struct Opened {
+    /// The episodes.
+    pub dataset: Arc<Dataset>,
+    /// One a folder, in their order.
+    pub models: Vec<Arc<dyn Predictor>>,
+}
+
+/// Opens the dataset that was asked for, else the sample episodes, and the models of the folders. Refuses a model that
+/// was trained on other data.
+pub fn open(
+    data: Option<&PathBuf>,
+    topics: &[(Role, String)],
+    folders: &[PathBuf],
+) -> anyhow::Result<Opened> {
+    let path = sample::data(data)?;
+    let dataset = Dataset::open_with(&path, topics)?;
+    let mut models = Vec::with_capacity(folders.len());
+    for folder in folders {
+        models.push(model(folder)?);
+        let config = checkpoint::load_config(&folder.join(CONFIG))?;
+        // One that cannot be read says so when it is shown; the others still open.
+        if let Ok(first) = dataset.episode_aligned(0, config.layout()) {
+            suits(&config, &first).with_context(|| path.display().to_string())?;
+        }
+    }
+    Ok(Opened {
+        dataset: Arc::new(dataset),
+        models,
+    })
+}
+
+/// The model of a checkpoint folder, for a session.
+pub fn model(folder: &Path) -> anyhow::Result<Arc<dyn Predictor>> {
+    let update = checkpoint::update_of(folder);
+    let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
+    let origin = Origin {
+        source: folder.display().to_string(),
+        update,
+        hash,
+    };
+    Ok(Arc::new(Trained::new(model, probe, origin)?))
+}
+
+/// The seed that the model's training cut its validation split by; 0 where its report does not say.
+pub fn split_seed(folder: &Path) -> u64 {
+    let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
+    let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
+    report["seed"].as_u64().unwrap_or(0)
+}
