@@ -111,20 +111,14 @@ impl Answer {
     /// The same after an earlier one of its target: what it has not come to yet is shown as it was before.
     #[must_use]
     pub fn after(mut self, before: &Self) -> Self {
-        if self.done {
-            return self;
-        }
-        fn keep<T: Clone>(now: &mut Option<T>, before: &Option<T>) {
-            if now.is_none() {
-                now.clone_from(before);
+        if !self.done {
+            self.readings = self.readings.or_else(|| before.readings.clone());
+            self.other = self.other.or_else(|| before.other.clone());
+            self.lattice = self.lattice.or_else(|| before.lattice.clone());
+            self.spread = self.spread.or_else(|| before.spread.clone());
+            if self.responses.is_empty() {
+                self.responses = Arc::clone(&before.responses);
             }
-        }
-        keep(&mut self.readings, &before.readings);
-        keep(&mut self.other, &before.other);
-        keep(&mut self.lattice, &before.lattice);
-        keep(&mut self.spread, &before.spread);
-        if self.responses.is_empty() {
-            self.responses = Arc::clone(&before.responses);
         }
         self
     }

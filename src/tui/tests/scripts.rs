@@ -1,5 +1,7 @@
 //! Everything that the bench can do, by keys alone: a script, then a look at the session and the screen.
 
+#![expect(clippy::float_cmp, reason = "α is compared as it was set")]
+
 use std::sync::Arc;
 
 use ratatui::layout::Size;
