@@ -285,9 +285,16 @@ pub struct ExportArgs {
     /// Only these steps, counted from 1: `4-9`, or one
     #[arg(long, value_name = "FIRST-LAST", value_parser = parse_steps)]
     pub steps: Option<RangeInclusive<usize>>,
-    /// What a PNG shows: `strip`, a figure of truth, model and error an episode, or `sheet`, a row an episode
+    /// What a PNG shows: `strip`, a figure of truth, model and error an episode; `sheet`, a row an episode; `view`, what
+    /// the terminal shows
     #[arg(long, value_enum, default_value_t)]
     pub figure: Figure,
+    /// Size of the terminal of `--figure view`, in columns x rows
+    #[arg(long, default_value = "120x40", value_parser = parse_size)]
+    pub size: (u16, u16),
+    /// Keys to send to the terminal of `--figure view` first, as for `view`
+    #[arg(long)]
+    pub keys: Option<String>,
     /// Only every K-th step in a PNG [default: so that at most 16 are shown]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..))]
     pub every: Option<u16>,
@@ -307,6 +314,8 @@ pub enum Figure {
     Strip,
     /// A contact sheet: truth and model of every episode.
     Sheet,
+    /// The terminal.
+    View,
 }
 
 /// What `export` writes.

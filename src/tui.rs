@@ -16,7 +16,7 @@
 //! ```
 //! This is the overview; [`view`] lists the other views and the panes of each. One file a pane; [`layout`] says where
 //! each stands, [`face`] holds what only this face knows, [`app`] turns keys and clicks into commands, [`terminal`] runs
-//! it all, [`print()`] writes a frame as text, [`plain()`] what it says.
+//! it all, [`print()`] writes a frame as text, [`picture()`] as pixels, [`plain()`] what it says.
 
 pub mod app;
 pub mod compare;
@@ -41,6 +41,7 @@ mod latents;
 mod lattice;
 mod paint;
 mod palette;
+mod picture;
 mod plain;
 mod plane;
 mod plot;
@@ -65,6 +66,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 pub use face::Face;
+pub use picture::{Picture, picture};
 pub use plain::plain;
 pub use print::print;
 

@@ -3,6 +3,7 @@
 mod choose;
 mod progress;
 mod sink;
+mod view;
 
 use std::sync::Arc;
 
@@ -10,7 +11,7 @@ use anyhow::{Context, anyhow, bail};
 
 use self::progress::Progress;
 use super::open::{self, Opened};
-use crate::cli::ExportArgs;
+use crate::cli::{ExportArgs, ExportFormat, Figure};
 use crate::export::drive::{Plan, Source, drive};
 use crate::session::state::State;
 use crate::session::{Session, model_key};
@@ -25,6 +26,9 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         );
     };
     let state = args.state.as_deref().map(read).transpose()?;
+    if format == ExportFormat::Png && args.figure == Figure::View {
+        return view::run(args);
+    }
     let stop = super::stop_on_signals()?;
     let folders = open::folders(&args.model)?;
     let Opened { dataset, models } =

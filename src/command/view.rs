@@ -108,7 +108,7 @@ fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
 }
 
 /// Presses the keys one after the other, each once what the one before it asked for has been computed.
-fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
+pub(super) fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
     for key in keys {
         wait(app)?;
         if app.press(key) == Flow::Quit {
@@ -118,7 +118,7 @@ fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
     Ok(Flow::Go)
 }
 
-fn wait(app: &mut App) -> anyhow::Result<()> {
+pub(super) fn wait(app: &mut App) -> anyhow::Result<()> {
     loop {
         let scored = app.session.surveyed();
         if app.session.wait_idle(PATIENCE) {

@@ -182,7 +182,8 @@ fn wait(session: &mut Session, onlooker: &dyn Onlooker) -> Result<(), ExportErro
     }
 }
 
-fn provenance_of(source: Source<'_>, state: &State, split: Option<Split>) -> Provenance {
+/// Where what a session of `source` shows comes from; `state` is what its snapshot says.
+pub fn provenance_of(source: Source<'_>, state: &State, split: Option<Split>) -> Provenance {
     let models = source.models.iter();
     let infos: Vec<_> = models.map(|m| Arc::new(m.info().clone())).collect();
     let origin = |(i, model): (usize, &Arc<dyn Predictor>)| ModelOrigin {

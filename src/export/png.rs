@@ -6,6 +6,7 @@ mod rows;
 mod sheet;
 mod strip;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -96,12 +97,23 @@ impl Sink for Picture {
         }
         let picture = Canvas::stack(&self.blocks);
         let facts = self.provenance.map(|provenance| provenance.facts());
-        encode::write(
-            &picture,
-            self.figure,
-            &facts.unwrap_or_default(),
-            &mut self.output,
-        )?;
-        self.output.commit()
+        let mut facts = facts.unwrap_or_default();
+        facts.extend(encode::about(self.figure));
+        let size = [picture.width(), picture.height()];
+        save(self.output, size, picture.pixels(), &facts)
     }
+}
+
+/// Writes a picture of so many columns and rows, row major, with facts about it as text chunks.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn save(
+    mut output: Output,
+    size: [usize; 2],
+    pixels: &[[u8; 3]],
+    facts: &BTreeMap<String, String>,
+) -> Result<(), ExportError> {
+    encode::write(size, pixels, facts, &mut output)?;
+    output.commit()
 }

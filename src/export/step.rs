@@ -380,3 +380,92 @@ impl<'a> Step<'a> {
         value.filter(|value| value.is_finite())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+    use std::sync::Arc;
+    use std::time::Duration;
+
+    use super::*;
+    use crate::episode::{EpisodeSource, Layout};
+    use crate::export::drive::{Source, provenance_of};
+    use crate::measure::gaussian::{Factor, Gaussian, product};
+    use crate::session::Session;
+    use crate::session::command::Command;
+    use crate::session::fake::{FakePredictor, FakeSource};
+    use crate::session::predict::Predictor;
+    use crate::session::state::State;
+
+    /// A model at step 6 of a made-up episode.
+    fn run(model: FakePredictor) -> Run {
+        let source = FakeSource::new(1);
+        let models: Vec<Arc<dyn Predictor>> = vec![Arc::new(model)];
+        let mut session = Session::new(Arc::new(source.clone()), models.clone());
+        assert!(session.wait_idle(Duration::from_mins(1)));
+        session.apply(Command::SeekTo(6));
+        let from = Source {
+            episodes: &source,
+            models: &models,
+        };
+        Run {
+            episode: Arc::new(source.load(0, Layout::default()).unwrap()),
+            provenance: Arc::new(provenance_of(from, &State::default(), None)),
+            models: vec![vec![session.snapshot()]],
+        }
+    }
+
+    #[test]
+    fn alphas_and_gaussians_multiply_to_the_belief_also_where_the_prior_is_left_out() {
+        for (model, prior, trained) in [
+            (FakePredictor::three(), 1.0, Some(true)),
+            (FakePredictor::joint(), 1.0, Some(true)),
+            (FakePredictor::vision(), 0.0, None),
+        ] {
+            let run = run(model);
+            let step = Step::of(&run).next().unwrap();
+            let count = step.experts().count();
+            assert!((step.alpha(count - 1) - prior).abs() < f32::EPSILON);
+            assert_eq!(step.trained(), trained);
+            let factors: Vec<Factor<'_>> = (0..count)
+                .map(|i| {
+                    let said = step.expert(i).unwrap().latent.as_ref().unwrap();
+                    Factor {
+                        gaussian: Gaussian {
+                            mean: &said.mean,
+                            log_var: &said.log_var,
+                        },
+                        alpha: step.alpha(i),
+                    }
+                })
+                .collect();
+            let (made, belief) = (product(&factors).unwrap(), step.posterior().unwrap());
+            for d in 0..belief.mean.len() {
+                assert!((made.mean[d] - belief.mean[d]).abs() < 1e-5);
+                assert!((made.log_var[d] - belief.log_var[d]).abs() < 1e-5);
+            }
+            assert_eq!(step.alpha(99).to_bits(), 0, "there is no such expert");
+        }
+    }
+
+    #[test]
+    fn names_are_one_of_a_kind_and_what_is_known_is_finite() {
+        let mut names: Vec<&str> = READINGS.iter().map(|reading| reading.name).collect();
+        names.sort_unstable();
+        assert!(names.windows(2).all(|pair| pair[0] != pair[1]));
+        let run = run(FakePredictor::three());
+        let step = Step::of(&run).next().unwrap();
+        for reading in READINGS {
+            let value = (reading.of)(&step);
+            assert!(value.is_none_or(f32::is_finite), "{}", reading.name);
+            assert!(value.is_some(), "{}", reading.name);
+        }
+        for (i, expert) in step.experts().enumerate() {
+            for reading in readings_of(expert) {
+                assert!((reading.of)(&step, i).is_some(), "{}", reading.name);
+            }
+        }
+        assert_eq!(named(&step, "no such reading"), None);
+    }
+}

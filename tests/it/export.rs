@@ -324,6 +324,30 @@ fn a_contact_sheet_has_two_rows_an_episode() {
 }
 
 #[test]
+fn the_terminal_can_be_had_as_a_picture() {
+    let folder = tempfile::tempdir().unwrap();
+    let state = "v=1;episode=ep00002;step=9";
+    let options = ["--figure", "view", "--size", "80x24", "--state", state];
+    let draw = |name, keys: &str| {
+        let all = [&options[..], &["--keys", keys]].concat();
+        image::open(exported(folder.path(), name, &all))
+            .unwrap()
+            .into_rgb8()
+    };
+    let [on, off] = [draw("on.png", "l"), draw("off.png", "l1")];
+    assert_eq!(on.dimensions(), (80 * 8, 24 * 16));
+    let differ = on
+        .pixels()
+        .zip(off.pixels())
+        .filter(|(a, b)| a != b)
+        .count();
+    assert!((200..80 * 8 * 24 * 16 / 2).contains(&differ), "{differ}");
+    // All but the message in the last line.
+    let above = |image: &image::RgbImage| image.as_raw()[..80 * 8 * 23 * 16 * 3].to_vec();
+    assert!(above(&on) == above(&draw("again.png", "l11")));
+}
+
+#[test]
 fn what_cannot_be_exported_says_why_and_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |options: &[&str]| {
@@ -353,6 +377,11 @@ fn what_cannot_be_exported_says_why_and_leaves_nothing() {
         ),
         (&["a.csv", "--state", "v=1;model=vhp"], "--model FOLDER"),
         (&["a.csv", "--state", "v=1;episode=no"], "poescope info"),
+        (&["a.png", "--figure", "view", "--steps", "4"], "one moment"),
+        (
+            &["a.png", "--figure", "view", "--state", "v=1;episode=no"],
+            "--state: episode",
+        ),
     ] {
         let said = refused(options);
         assert!(said.contains(word), "{options:?}: {said}");
@@ -365,6 +394,11 @@ fn what_cannot_be_exported_says_why_and_leaves_nothing() {
     let said = refused(&["a.csv"]);
     assert!(said.contains("--force"), "{said}");
     assert_eq!(std::fs::read(&mine).unwrap(), b"mine");
+    let data = folder.path().join("data.mcap");
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/sample_data/episodes.mcap");
+    std::fs::copy(sample, &data).unwrap();
+    let said = refused(&["data.mcap", "--force", "--data", data.to_str().unwrap()]);
+    assert!(said.contains("the recording itself"), "{said}");
     exported(folder.path(), "a.csv", &["--force"]);
     assert_ne!(std::fs::read(&mine).unwrap(), b"mine");
 }

@@ -33,6 +33,17 @@ pub(super) fn sink(
     dataset: &Arc<Dataset>,
 ) -> anyhow::Result<Box<dyn Sink>> {
     let (out, force) = (&args.out, args.force);
+    let recorded = dataset.files().into_iter();
+    if let Ok(own) = out.canonicalize()
+        && recorded
+            .filter_map(|file| file.path.canonicalize().ok())
+            .any(|path| path == own)
+    {
+        bail!(
+            "{} is the recording itself; choose another --out",
+            out.display()
+        );
+    }
     Ok(match format {
         ExportFormat::Rrd => return rrd(out, force),
         ExportFormat::Csv => Box::new(Tables::create(out, force)?),
@@ -44,8 +55,9 @@ pub(super) fn sink(
 
 fn figure(args: &ExportArgs) -> Figure {
     let (kind, zoom) = match args.figure {
-        cli::Figure::Strip => (Kind::Strip, 2),
         cli::Figure::Sheet => (Kind::Sheet, 1),
+        // The terminal's picture has no sink: it is of one moment.
+        cli::Figure::Strip | cli::Figure::View => (Kind::Strip, 2),
     };
     Figure {
         kind,

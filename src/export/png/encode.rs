@@ -4,15 +4,14 @@ use std::collections::BTreeMap;
 
 use png::{BitDepth, ColorType, Encoder, EncodingError};
 
-use super::canvas::Canvas;
 use super::{Figure, Kind};
 use crate::export::output::Output;
 use crate::export::{ExportError, color};
 
-/// Writes it.
+/// Writes a picture of so many columns and rows.
 pub(super) fn write(
-    picture: &Canvas,
-    figure: Figure,
+    [width, height]: [usize; 2],
+    pixels: &[[u8; 3]],
     facts: &BTreeMap<String, String>,
     output: &mut Output,
 ) -> Result<(), ExportError> {
@@ -27,10 +26,10 @@ pub(super) fn write(
             what: other.to_string(),
         },
     };
-    let mut encoder = Encoder::new(output, picture.width() as u32, picture.height() as u32);
+    let mut encoder = Encoder::new(output, width as u32, height as u32);
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
-    for (key, value) in facts.iter().chain(&about(figure)) {
+    for (key, value) in facts {
         let key = format!("poescope.{key}");
         // Plain text chunks are Latin-1; names of models and episodes need not be.
         let added = if value.is_ascii() {
@@ -42,13 +41,13 @@ pub(super) fn write(
     }
     let mut writer = encoder.write_header().map_err(&failed)?;
     writer
-        .write_image_data(picture.pixels().as_flattened())
+        .write_image_data(pixels.as_flattened())
         .and_then(|()| writer.finish())
         .map_err(&failed)
 }
 
 /// How to read the picture.
-fn about(figure: Figure) -> BTreeMap<String, String> {
+pub(super) fn about(figure: Figure) -> BTreeMap<String, String> {
     let (name, rows) = match figure.kind {
         Kind::Strip => (
             "strip",
