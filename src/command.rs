@@ -3,6 +3,7 @@
 pub mod eval;
 pub mod info;
 pub mod sample;
+pub mod serve;
 pub mod simulate;
 pub mod train;
 pub mod view;
@@ -17,6 +18,7 @@ use crate::cli::{Cli, Command};
 pub fn dispatch(cli: Cli) -> anyhow::Result<()> {
     match cli.command.unwrap_or(Command::View(cli.view)) {
         Command::View(args) => view::run(args),
+        Command::Serve(args) => serve::run(args),
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Train(args) => train::run(&args),

@@ -32,3 +32,4 @@ pub mod session;
 pub mod sim;
 pub mod train;
 pub mod tui;
+pub mod web;

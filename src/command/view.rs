@@ -1,8 +1,8 @@
 //! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
 
-mod cache;
+pub(super) mod cache;
 mod failures;
-mod follow;
+pub(super) mod follow;
 mod report;
 
 use std::io::{self, IsTerminal};
@@ -16,7 +16,7 @@ use ratatui_image::picker::ProtocolType;
 
 use self::follow::{Follower, Watched};
 use self::report::Report;
-use super::{sample, say};
+use super::{sample, say, serve};
 use crate::cli::{Colors, ImageProtocol, ViewArgs};
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -43,6 +43,9 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         eprintln!(
             "poescope: standard output is no terminal, so one frame is drawn as with --print"
         );
+    }
+    if !in_terminal && args.serve.is_some() {
+        bail!("--serve needs a terminal here; `poescope serve` needs none");
     }
     let size = if in_terminal {
         terminal_size().unwrap_or(args.size)
@@ -77,6 +80,10 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         return say(&report.of(app.session.snapshot(), &app.face, size)?);
     }
     app.session.survey();
+    let server = args
+        .serve
+        .map(|address| serve::attach(&mut app.session, address, args.read_only));
+    let _server = server.transpose()?;
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
     let _follower = follower.context("starting a thread to watch the models")?;
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
@@ -90,7 +97,7 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
 
 /// Opens the dataset and the models that the arguments name, and refuses a model that was trained on other data. The
 /// folders that training runs write to are to be watched.
-fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
+pub(super) fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
     let path = sample::data(args.data.as_ref())?;
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
     let folders = if args.model.is_empty() {
