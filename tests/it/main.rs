@@ -20,3 +20,4 @@ mod resume;
 mod sample;
 mod tensorboard;
 mod topics;
+mod web;
