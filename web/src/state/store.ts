@@ -3,6 +3,7 @@
  * changed since it last looked.
  */
 import type { Message } from "../protocol/frame";
+import { type InitialCamera, applyCamera } from "./camera";
 import { applyGui, type GuiElement } from "./gui";
 import { applyNotice, type Notice } from "./notices";
 import { applyScene, type SceneNode } from "./scene";
@@ -20,6 +21,7 @@ export class Store {
   readonly gui = new Map<string, GuiElement>();
   readonly scene = new Map<string, SceneNode>();
   readonly notices = new Map<string, Notice>();
+  camera: InitialCamera = { position: undefined, lookAt: undefined, fov: undefined };
   /** Type names that were skipped, each once: newer servers may say more. */
   readonly skipped = new Set<string>();
   /** Whether the server has sent all there was when we came. */
@@ -78,6 +80,12 @@ export class Store {
     if (gui !== undefined) return void this.#changes.gui.add(gui);
     const scene = applyScene(this.scene, message);
     if (scene !== undefined) return scene.forEach((name) => this.#changes.scene.add(name));
+    const camera = applyCamera(this.camera, message);
+    if (camera !== undefined) {
+      this.camera = camera;
+      // The root: whoever draws the scene looks again.
+      return void this.#changes.scene.add("");
+    }
     if (applyNotice(this.notices, message)) {
       this.#changes.notices = true;
       return;
