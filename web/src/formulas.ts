@@ -45,7 +45,7 @@ export const TERMS = {
   pull: {
     title: "Pull",
     formula: "v_{i} = W (s_{i} ⊙ (μ_{i} − μ_{0}))",
-    text: "What the sensor moves the position by. The pulls add up to the whole correction of the prediction; they may oppose one another.",
+    text: "What the sensor moves the position by, in centimetres. The pulls add up to the whole correction of the prediction; they may oppose one another.",
   },
   surprise: {
     title: "Surprise",

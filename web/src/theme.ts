@@ -1,23 +1,27 @@
 /** Dark or light: as the system says, until somebody chooses; and the colours that drawings need of it. */
+import { type Rgb, contrast, rgbOf } from "./colour";
 
 export type Theme = "dark" | "light";
 
 const STORED = "poescope-theme";
-const system = matchMedia("(prefers-color-scheme: dark)");
+const system = () => matchMedia("(prefers-color-scheme: dark)");
+
+/** What was chosen in a browser that keeps nothing. */
+let forced: Theme | undefined;
 
 type Listener = (theme: Theme) => void;
 const listeners: Listener[] = [];
 
 export function theme(): Theme {
   const chosen = stored();
-  return chosen ?? (system.matches ? "dark" : "light");
+  return chosen ?? (system().matches ? "dark" : "light");
 }
 
 export function toggleTheme(): void {
   const next: Theme = theme() === "dark" ? "light" : "dark";
   try {
     // What the system says anyway is not a choice; it may change with the hour.
-    if (next === (system.matches ? "dark" : "light")) localStorage.removeItem(STORED);
+    if (next === (system().matches ? "dark" : "light")) localStorage.removeItem(STORED);
     else localStorage.setItem(STORED, next);
   } catch {
     // A browser that keeps nothing: the choice holds until the page is closed.
@@ -29,8 +33,6 @@ export function toggleTheme(): void {
 export function onTheme(listener: Listener): void {
   listeners.push(listener);
 }
-
-let forced: Theme | undefined;
 
 function stored(): Theme | undefined {
   try {
@@ -50,18 +52,13 @@ function apply(): void {
 
 /** To be called once, before anything is drawn. */
 export function startTheme(): void {
-  system.addEventListener("change", apply);
+  system().addEventListener("change", apply);
   apply();
 }
 
 /** A custom property of the style sheet: `--ink`. */
 export function token(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-}
-
-/** Whether movement was asked to be kept small. */
-export function reducedMotion(): boolean {
-  return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }
 
 /**
@@ -76,17 +73,13 @@ export function themed(css: string): string {
   return grey && (high < 64 || low > 216) ? token("--ink") : css;
 }
 
-/** Red, green and blue from 0 to 255 of `#rgb`, `#rrggbb`, `rgb(…)`, `black`, `white`. */
-export function rgbOf(css: string): [number, number, number] | undefined {
-  if (css === "black") return [0, 0, 0];
-  if (css === "white") return [255, 255, 255];
-  const long = /^#([0-9a-f]{2})([0-9a-f]{2})([0-9a-f]{2})$/i.exec(css);
-  if (long) return [1, 2, 3].map((i) => parseInt(long[i] ?? "", 16)) as [number, number, number];
-  const brief = /^#([0-9a-f])([0-9a-f])([0-9a-f])$/i.exec(css);
-  if (brief) return [1, 2, 3].map((i) => parseInt(`${brief[i]}${brief[i]}`, 16)) as [number, number, number];
-  const call = /^rgba?\(([^)]*)\)$/.exec(css);
-  const parts = call?.[1]?.split(/[\s,/]+/).filter(Boolean).map(Number);
-  return parts && parts.length >= 3 && parts.slice(0, 3).every(Number.isFinite)
-    ? (parts.slice(0, 3) as [number, number, number])
-    : undefined;
+/** A colour for letters: moved towards the ink until it can be read on a panel. */
+export function readable(css: string): string {
+  const [color, ink, ground] = [css, token("--ink"), token("--panel")].map(rgbOf);
+  if (color === undefined || ink === undefined || ground === undefined) return css;
+  for (let part = 0; part < 1; part += 0.1) {
+    const mixed = color.map((channel, i) => Math.round(channel + ((ink[i] ?? 0) - channel) * part)) as Rgb;
+    if (contrast(mixed, ground) >= 4.5) return `rgb(${mixed.join(" ")})`;
+  }
+  return token("--ink");
 }

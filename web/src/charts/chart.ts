@@ -1,13 +1,15 @@
 /** One chart: uPlot for the drawing, a title with a legend that reads the values at the cursor. */
 import uPlot from "uplot";
-import { fillOf, tile } from "../fills";
-import { short } from "../format";
 import type { TermName } from "../formulas";
 import type { ExpertMeta } from "../meta";
-import { rgbOf, themed, token } from "../theme";
-import { h, setHidden } from "../ui/dom";
+import { themed, token } from "../theme";
+import { h, setHidden, setText } from "../ui/dom";
 import { explained } from "../ui/term";
+import { drawCursor } from "./cursor";
+import { drawDimensions } from "./dimensions";
+import { type Drawing, legendItems } from "./legend";
 import { type Described, type Series, described, shapeOf } from "./options";
+import { drawStack } from "./stack";
 
 export interface ChartView {
   props: Readonly<Record<string, unknown>>;
@@ -22,11 +24,11 @@ export interface ChartKind {
   name: string;
   term: TermName;
   title: string;
+  /** What one value of x is called. */
+  x: string;
   /** Whether x is the step, so that a click goes there. */
   time: boolean;
-  /** What is drawn as stacked areas with the experts' fills. */
-  stacked?: boolean;
-  unit: string;
+  drawing: Drawing;
 }
 
 const AXIS_FONT = "11px system-ui, sans-serif";
@@ -35,15 +37,16 @@ export class Chart {
   readonly element: HTMLElement;
   readonly #kind: ChartKind;
   readonly #onSeek: (x: number) => void;
-  readonly #box = h("div", { class: "plot" });
+  readonly #box = h("div", { class: "plot", role: "img" });
   readonly #legend = h("div", { class: "legend" });
-  readonly #empty = h("p", { class: "empty" }, "nothing to draw here");
+  readonly #empty = h("p", { class: "empty" }, "nothing to draw here yet");
   #plot: uPlot | undefined;
   #shape = "";
   #props: unknown;
   #chart: Described | undefined;
   #view: ChartView | undefined;
-  #hover: number | null = null;
+  /** Index of x under the pointer. */
+  #hover: number | undefined;
 
   constructor(kind: ChartKind, onSeek: (x: number) => void) {
     this.#kind = kind;
@@ -71,15 +74,15 @@ export class Chart {
   /** Draws again in the colours of now. */
   retint(): void {
     this.#shape = "";
-    if (this.#chart !== undefined) this.#draw(this.#chart);
+    if (this.#chart !== undefined && this.#plot !== undefined) this.#draw(this.#chart);
     this.#showLegend();
   }
 
   #clear(): void {
     this.#props = undefined;
+    this.#chart = undefined;
     this.#plot?.destroy();
     this.#plot = undefined;
-    this.#shape = "";
     this.#legend.replaceChildren();
     setHidden(this.#empty, false);
   }
@@ -97,165 +100,67 @@ export class Chart {
   }
 
   #options(chart: Described): uPlot.Options {
-    const { width, height } = this.#size();
+    const { drawing, time } = this.#kind;
     const grid = { stroke: token("--grid"), width: 1 };
     const axis = { stroke: token("--dim"), font: AXIS_FONT, grid, ticks: { ...grid, size: 3 }, gap: 3 };
-    const range = (name: string) => chart.ranges[name];
-    const y = range("y");
+    const y = chart.ranges["y"];
     return {
-      width,
-      height,
+      ...this.#size(),
       padding: [4, 6, 0, 0],
       legend: { show: false },
-      cursor: { y: false, points: { size: 5 }, drag: { x: false, y: false }, ...(this.#kind.time ? { sync: { key: "steps" } } : {}) },
+      cursor: { y: false, points: { show: drawing === "lines", size: 5 }, drag: { x: false, y: false }, ...(time ? { sync: { key: "steps" } } : {}) },
       scales: {
-        x: { time: false, range: (_, low, high) => (high > low ? [low - 0.02 * (high - low), high + 0.02 * (high - low)] : [low - 1, high + 1]) },
+        x: { time: false, range: (_, low, high) => margins(low, high, drawing === "dimensions" ? 1 : 0.02 * (high - low)) },
         y: y === undefined ? {} : { range: (_, low, high) => [y[0] ?? low, y[1] ?? high] },
       },
-      series: chart.series.map((series, i) => (i === 0 ? {} : this.#seriesOptions(series, i))),
-      bands: this.#kind.stacked ? [] : chart.bands.map(({ series, fill }) => ({ series, fill: fill ?? token("--wash") })),
+      series: chart.series.map((series, i) => (i === 0 ? {} : seriesOptions(series, drawing))),
+      bands: drawing === "lines" ? chart.bands.map(({ series, fill }) => ({ series, fill: fill ?? token("--wash") })) : [],
       axes: [
         { ...axis, size: 20, space: 36, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] },
         { ...axis, size: 38, space: 24, values: (_, ticks) => ticks.map((tick) => tick.toString().replace("-", "−")) },
       ],
       hooks: {
-        drawClear: this.#kind.stacked ? [(plot) => this.#drawStack(plot, chart)] : [],
-        draw: [(plot) => this.#drawCursor(plot)],
+        // A chart keeps its options while its data change: what is drawn is asked for each time.
+        drawAxes: [(plot) => this.#drawUnder(plot)],
+        draw: [(plot) => drawCursor(plot, this.#view?.now, this.#view?.boundary)],
         setCursor: [(plot) => this.#hovered(plot)],
         ready: [(plot) => plot.over.addEventListener("click", () => this.#clicked(plot))],
       },
     };
   }
 
-  #seriesOptions(series: Series, index: number): uPlot.Series {
-    const lone = series.points || this.#kind.name === "latents";
-    return {
-      label: series.label,
-      show: series.show,
-      ...(series.stroke === undefined || this.#kind.stacked ? {} : { stroke: themed(series.stroke), width: series.width }),
-      ...(series.dash === undefined ? {} : { dash: series.dash }),
-      ...(series.fill === undefined || this.#kind.stacked ? {} : { fill: series.fill }),
-      points: { show: lone && series.stroke !== undefined, size: index === 1 ? 6 : 4 },
-    };
-  }
-
-  /** Each expert's part between its line and the one below, in its fill. */
-  #drawStack(plot: uPlot, chart: Described): void {
-    const { ctx } = plot;
-    const ratio = devicePixelRatio;
-    const base = plot.valToPos(0, "y", true);
-    const xs = chart.data[0];
-    ctx.save();
-    ctx.beginPath();
-    ctx.rect(plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height);
-    ctx.clip();
-    for (let s = 1; s < chart.series.length; s += 1) {
-      const expert = this.#expertOf(chart.series[s]);
-      const color = expert?.color ?? themed(chart.series[s]?.stroke ?? "#999999");
-      const pattern = ctx.createPattern(tile(color, fillOf(expert?.fill ?? "█"), token("--panel"), ratio), "repeat");
-      // From the top line down to the next lower one; which that is, the numbers say.
-      const top = chart.data[s] ?? [];
-      const below = this.#below(chart, s);
-      ctx.fillStyle = pattern ?? color;
-      runs(top).forEach(([from, to]) => {
-        ctx.beginPath();
-        for (let i = from; i <= to; i += 1) ctx.lineTo(plot.valToPos(xs[i] ?? 0, "x", true), plot.valToPos(top[i] ?? 0, "y", true));
-        for (let i = to; i >= from; i -= 1) {
-          const floor = below?.[i];
-          ctx.lineTo(plot.valToPos(xs[i] ?? 0, "x", true), typeof floor === "number" ? plot.valToPos(floor, "y", true) : base);
-        }
-        ctx.fill();
-      });
-      ctx.strokeStyle = token("--panel");
-      ctx.lineWidth = ratio;
-      ctx.stroke();
-    }
-    ctx.restore();
-  }
-
-  /** The series that a stacked one stands on: that of the band whose upper edge it is. */
-  #below(chart: Described, index: number): ArrayLike<number | null | undefined> | undefined {
-    const band = chart.bands.find(({ series }) => series[0] === index);
-    return band === undefined ? undefined : chart.data[band.series[1]];
-  }
-
-  #expertOf(series: Series | undefined): ExpertMeta | undefined {
-    const words = (series?.label ?? "").toLowerCase().split(/\s+/);
-    return this.#view?.experts.find(({ name, letter }) => words.includes(name) || words.includes(letter.toLowerCase()));
-  }
-
-  #drawCursor(plot: uPlot): void {
-    const { now, boundary } = this.#view ?? {};
-    const { ctx, bbox } = plot;
-    const line = (x: number, color: string, width: number, dash: number[]) => {
-      const at = plot.valToPos(x, "x", true);
-      if (!(at >= bbox.left - 1 && at <= bbox.left + bbox.width + 1)) return;
-      ctx.save();
-      ctx.strokeStyle = color;
-      ctx.lineWidth = width * devicePixelRatio;
-      ctx.setLineDash(dash.map((n) => n * devicePixelRatio));
-      ctx.beginPath();
-      ctx.moveTo(at, bbox.top);
-      ctx.lineTo(at, bbox.top + bbox.height);
-      ctx.stroke();
-      ctx.restore();
-    };
-    if (boundary !== undefined) line(boundary, token("--dim"), 1, [2, 3]);
-    if (now !== undefined) line(now, token("--ink"), 1.5, []);
+  #drawUnder(plot: uPlot): void {
+    const experts = this.#view?.experts ?? [];
+    if (this.#chart === undefined) return;
+    if (this.#kind.drawing === "stack") drawStack(plot, this.#chart, experts);
+    if (this.#kind.drawing === "dimensions") drawDimensions(plot, this.#chart, experts);
   }
 
   #hovered(plot: uPlot): void {
-    const next = plot.cursor.idx ?? null;
+    const next = plot.cursor.idx ?? undefined;
     if (next === this.#hover) return;
     this.#hover = next;
     this.#showLegend();
   }
 
   #clicked(plot: uPlot): void {
-    const x = plot.cursor.idx === null || plot.cursor.idx === undefined ? undefined : plot.data[0][plot.cursor.idx];
+    const { idx } = plot.cursor;
+    const x = idx === null || idx === undefined ? undefined : plot.data[0][idx];
     if (this.#kind.time && x !== undefined) this.#onSeek(x);
   }
 
-  /** Names with their strokes; values under the pointer, else at the cursor. */
+  /** Values under the pointer, else at the cursor. */
   #showLegend(): void {
     const chart = this.#chart;
-    if (chart === undefined || this.#plot === undefined) return;
-    const at = this.#hover ?? this.#indexOfNow(chart);
-    const shown = chart.series.map((series, i) => ({ series, i })).filter(({ series, i }) => i > 0 && series.label !== "" && this.#named(series));
-    const items = shown.map(({ series, i }) => {
-      const value = at === undefined ? undefined : this.#valueAt(chart, i, at);
-      const swatch = h("i", { class: "swatch", "aria-hidden": "true" });
-      const expert = this.#expertOf(series);
-      const color = expert?.color ?? (series.stroke === undefined ? (series.fill ?? token("--dim")) : themed(series.stroke));
-      swatch.style.setProperty("--c", color);
-      if (this.#kind.stacked) swatch.dataset["fill"] = fillOf(expert?.fill ?? "█");
-      else swatch.dataset["line"] = series.stroke === undefined ? "band" : series.dash === undefined ? "solid" : "dashed";
-      return h("span", {}, swatch, series.label, ...(value === undefined ? [] : [" ", h("b", { class: "number" }, value)]));
-    });
-    const here = this.#hover === null || at === undefined ? [] : [h("span", { class: "at number" }, `${chart.xLabel || "x"} ${chart.data[0][at] ?? ""}`)];
+    if (chart === undefined) return;
+    const { drawing, title, x } = this.#kind;
+    const now = Array.from(chart.data[0]).indexOf(this.#view?.now ?? Number.NaN);
+    const at = this.#hover ?? (now < 0 ? undefined : now);
+    const items = legendItems(chart, drawing, this.#view?.experts ?? [], at);
+    const here = this.#hover === undefined ? [] : [h("span", { class: "at number" }, `${x} ${chart.data[0][this.#hover] ?? ""}`)];
     this.#legend.replaceChildren(...here, ...items);
-    this.#box.setAttribute("role", "img");
-    this.#box.setAttribute("aria-label", `${this.#kind.title}: ${items.map((item) => item.textContent).join(", ")}`);
-  }
-
-  /** Edges of bands that have no line are named by the band. */
-  #named(series: Series): boolean {
-    return series.show && (this.#kind.stacked === true || series.stroke !== undefined || series.fill !== undefined || rgbOf(series.label) !== undefined);
-  }
-
-  #valueAt(chart: Described, series: number, at: number): string | undefined {
-    const value = chart.data[series]?.[at];
-    if (typeof value !== "number") return undefined;
-    if (!this.#kind.stacked) return `${short(value)}${this.#kind.unit}`;
-    const floor = this.#below(chart, series)?.[at];
-    return `${Math.round((value - (typeof floor === "number" ? floor : 0)) * 100)} %`;
-  }
-
-  #indexOfNow(chart: Described): number | undefined {
-    const now = this.#view?.now;
-    if (now === undefined) return undefined;
-    const at = Array.from(chart.data[0]).indexOf(now);
-    return at < 0 ? undefined : at;
+    this.#box.setAttribute("aria-label", `${title}: ${items.map((item) => item.textContent).join(", ")}`);
+    setText(this.#empty, "nothing to draw here yet");
   }
 
   #size(): { width: number; height: number } {
@@ -268,17 +173,18 @@ export class Chart {
   }
 }
 
-/** First and last index of each stretch without holes. */
-export function runs(values: ArrayLike<number | null | undefined>): [number, number][] {
-  const found: [number, number][] = [];
-  let from = -1;
-  for (let i = 0; i <= values.length; i += 1) {
-    const holds = i < values.length && typeof values[i] === "number";
-    if (holds && from < 0) from = i;
-    if (!holds && from >= 0) {
-      found.push([from, i - 1]);
-      from = -1;
-    }
-  }
-  return found;
+function seriesOptions(series: Series, drawing: Drawing): uPlot.Series {
+  const drawn = drawing === "lines";
+  return {
+    label: series.label,
+    show: series.show,
+    ...(series.stroke === undefined || !drawn ? {} : { stroke: themed(series.stroke), width: series.width }),
+    ...(series.dash === undefined ? {} : { dash: series.dash }),
+    points: { show: drawn && series.points && series.stroke !== undefined, size: 4 },
+  };
+}
+
+/** The range with room at both ends. */
+function margins(low: number, high: number, room: number): [number, number] {
+  return high > low ? [low - room, high + room] : [low - 1, high + 1];
 }

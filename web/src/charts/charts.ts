@@ -4,11 +4,11 @@ import { type ChartName, STEP, chartOf } from "../names";
 import { Chart, type ChartKind } from "./chart";
 
 const KINDS: Record<ChartName, ChartKind> = {
-  shares: { name: "shares", term: "share", title: "share of precision", time: true, stacked: true, unit: "" },
-  latents: { name: "latents", term: "latents", title: "belief by latent dimension", time: false, unit: "" },
-  position: { name: "position", term: "position", title: "position error, cm", time: true, unit: " cm" },
-  horizon: { name: "horizon", term: "horizon", title: "error by steps ahead, cm", time: false, unit: " cm" },
-  psnr: { name: "psnr", term: "psnr", title: "PSNR, dB", time: true, unit: " dB" },
+  shares: { name: "shares", term: "share", title: "share of precision", x: "step", time: true, drawing: "stack" },
+  latents: { name: "latents", term: "latents", title: "belief by latent dimension", x: "dim", time: false, drawing: "dimensions" },
+  position: { name: "position", term: "position", title: "position error, cm", x: "step", time: true, drawing: "lines" },
+  horizon: { name: "horizon", term: "horizon", title: "by steps ahead, cm", x: "ahead", time: false, drawing: "lines" },
+  psnr: { name: "psnr", term: "psnr", title: "PSNR, dB", x: "step", time: true, drawing: "lines" },
 };
 
 export class Charts {

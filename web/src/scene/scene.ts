@@ -6,6 +6,7 @@ import { fixed } from "../format";
 import type { SceneNode } from "../state/scene";
 import { token } from "../theme";
 import { h } from "../ui/dom";
+import { icon } from "../ui/icons";
 import { explained } from "../ui/term";
 import { contentOf, dispose } from "./content";
 import { Labels } from "./labels";
@@ -36,7 +37,7 @@ export class SceneView {
 
   constructor(client: Client) {
     this.#client = client;
-    const reset = h("button", { type: "button", "aria-label": "reset the view", title: "reset the view" }, "⟲");
+    const reset = h("button", { type: "button", "aria-label": "reset the view", title: "reset the view" }, icon("reset"));
     reset.addEventListener("click", () => this.#place());
     const legend = h("span", { class: "legend" }, ...LEGEND.map(([cssClass, text]) => h("span", {}, h("i", { class: `swatch ${cssClass}`, "aria-hidden": "true" }), text)));
     this.element = h(

@@ -26,7 +26,14 @@ export class Experts {
     const all = control(client, names.ALL_ON);
     this.#controls = [scope, all];
     this.element.append(
-      h("header", {}, h("h2", {}, "Experts"), this.#badge),
+      h(
+        "header",
+        { class: "heads" },
+        h("h2", {}, "Experts"),
+        this.#badge,
+        h("small", explained("shareMean"), "mean"),
+        h("small", explained("sharePosition"), "pos"),
+      ),
       this.#rows,
       this.#empty,
       h("div", { class: "row scope" }, scope.element, all.element),
@@ -73,8 +80,8 @@ function badgeText(meta: Meta | undefined): string {
 class Row {
   readonly element: HTMLElement;
   readonly #controls: Control[];
-  readonly #mean = h("span", { class: "number" });
-  readonly #position = h("span", { class: "number" });
+  readonly #mean = h("span", { class: "number part", ...explained("shareMean") });
+  readonly #position = h("span", { class: "number part", ...explained("sharePosition") });
   readonly #bar = h("span", { class: "fill" });
   readonly #state = h("span", { class: "state" });
   readonly #readings = h("p", { class: "readings" });
@@ -89,11 +96,9 @@ class Row {
     this.element = h(
       "li",
       { class: "expert", "data-expert": expert.name },
-      h("div", { class: "head" }, key, chip, toggle.element, this.#state, h("span", { class: "shares" },
-        h("span", explained("shareMean"), h("small", {}, "mean"), this.#mean),
-        h("span", explained("sharePosition"), h("small", {}, "pos"), this.#position))),
+      h("div", { class: "head" }, key, chip, toggle.element, this.#mean, this.#position),
       h("div", { class: "bar", ...explained("share") }, this.#bar),
-      h("div", { class: "tail" }, alpha.element, this.#readings),
+      h("div", { class: "tail" }, alpha.element, this.#state, this.#readings),
     );
     this.element.style.setProperty("--c", expert.color);
   }
@@ -104,7 +109,7 @@ class Row {
     setText(this.#position, percent(expert.share_position));
     this.#bar.style.width = `${(expert.share_mean ?? 0) * 100}%`;
     const damaged = meta.corruptions.some(({ modality }) => sees(expert.name, modality));
-    setText(this.#state, expert.alpha === 0 ? "off" : damaged ? "~ damaged" : expert.alpha === 1 ? "" : "tempered");
+    setText(this.#state, expert.alpha === 0 ? "off, out of the product" : damaged ? "~ damaged" : "");
     this.element.classList.toggle("off", expert.alpha === 0);
     this.#readings.replaceChildren(...readings(expert));
     setHidden(this.#readings, expert.alpha === 0);
@@ -112,14 +117,14 @@ class Row {
 }
 
 function readings(expert: ExpertMeta): Node[] {
-  const parts: [Parameters<typeof explained>[0], string, number | null, string][] = [
-    ["information", "info", expert.information_nats, "nats"],
-    ["nis", "NIS", expert.nis, ""],
-    ["pull", "pull", expert.pull_cm === null ? null : Math.hypot(...expert.pull_cm), "cm"],
+  const parts: [Parameters<typeof explained>[0], string, number | null][] = [
+    ["information", "info", expert.information_nats],
+    ["nis", "NIS", expert.nis],
+    ["pull", "pull", expert.pull_cm === null ? null : Math.hypot(...expert.pull_cm)],
   ];
   return parts
     .filter(([, , value]) => value !== null)
-    .map(([term, name, value, unit]) => h("span", explained(term), `${name} `, h("b", { class: "number" }, short(value)), unit && ` ${unit}`));
+    .map(([term, name, value]) => h("span", explained(term), `${name} `, h("b", { class: "number" }, short(value))));
 }
 
 const SEEN: Record<string, string[]> = { joint: ["haptic", "proprio"], concat: ["vision", "haptic", "proprio"] };

@@ -95,7 +95,7 @@ function noteOf(name: FrameName, meta: Meta, label: string): string {
     case "prediction":
       return [ahead(meta.step, meta.start), withUnit(meta.psnr_db?.prediction, 1, "dB").replace("–", "")].join(" ").trim();
     case "error":
-      return `${/±\s*[\d.]+/.exec(label)?.[0] ?? ""} of ${meta.error_of}`.trim();
+      return `${/±\s*[\d.]+/.exec(label)?.[0] ?? ""} ${meta.error_of}`.trim();
     default:
       return "";
   }

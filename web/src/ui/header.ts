@@ -3,6 +3,7 @@ import type { Client } from "../client";
 import * as names from "../names";
 import { type Control, control } from "./control";
 import { h, setText } from "./dom";
+import { type IconName, icon } from "./icons";
 
 export interface Actions {
   help(): void;
@@ -23,27 +24,27 @@ export class Header {
     const episode = control(client, names.EPISODE, { label: "episode" });
     const model = control(client, names.MODEL, { label: "model" });
     this.#controls = [episode, model];
-    const button = (label: string, hint: string, act: () => void) => {
-      const element = h("button", { type: "button", title: hint, "aria-label": hint }, label);
+    const button = (sign: IconName, hint: string, act: () => void) => {
+      const element = h("button", { type: "button", title: hint, "aria-label": hint }, icon(sign));
       element.addEventListener("click", act);
       return element;
     };
-    const turn = (label: string, hint: string, key: string) => button(label, hint, () => client.key(key));
+    const turn = (sign: IconName, hint: string, key: string) => button(sign, hint, () => client.key(key));
     this.element = h(
       "header",
       { class: "top" },
       h("h1", {}, "poescope"),
-      h("div", { class: "group" }, episode.element, turn("‹", "previous episode  [", "["), turn("›", "next episode  ]", "]")),
+      h("div", { class: "group" }, episode.element, turn("previous", "previous episode  [", "["), turn("next", "next episode  ]", "]")),
       h("div", { class: "group" }, model.element),
       this.#notes,
       this.#connection,
       h(
         "div",
         { class: "group actions" },
-        button("⌘", "commands  : or Ctrl+K", actions.palette),
-        button("⧉", "copy a link to this state  y", actions.copy),
-        button("◐", "dark or light", actions.theme),
-        button("?", "keys and formulas  ?", actions.help),
+        button("commands", "commands  : or Ctrl+K", actions.palette),
+        button("copy", "copy a link to this state  y", actions.copy),
+        button("theme", "dark or light", actions.theme),
+        button("help", "keys and formulas  ?", actions.help),
       ),
     );
   }

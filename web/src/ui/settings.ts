@@ -41,7 +41,9 @@ export class Settings {
     this.#notes.push({ element, text: note });
     const name = h("span", term === undefined ? {} : { "data-term": term }, title);
     const body = h("div", { class: "controls" }, ...controls.map((each) => each.element));
-    this.element.append(h("details", { class: "fold" }, h("summary", {}, name, element), body));
+    // A high window has the room for all of them.
+    const open = innerHeight >= ROOMY_PX && innerWidth >= 1180;
+    this.element.append(h("details", { class: "fold", open }, h("summary", {}, name, element), body));
   }
 
   update(): void {
@@ -59,6 +61,8 @@ export class Settings {
     unknown.forEach((uuid) => this.#others.get(uuid)?.update());
   }
 }
+
+const ROOMY_PX = 900;
 
 const SHOWN = new Set(["GuiSliderMessage", "GuiNumberMessage", "GuiCheckboxMessage", "GuiDropdownMessage", "GuiButtonMessage"]);
 

@@ -5,6 +5,7 @@ import type { Meta } from "../meta";
 import * as names from "../names";
 import { type Control, control } from "./control";
 import { h, setText, svg } from "./dom";
+import { icon } from "./icons";
 
 /** Height of the drawing in its own units. */
 const HEIGHT = 40;
@@ -26,6 +27,8 @@ export class Timeline {
     this.#client = client;
     this.#speed = control(client, names.SPEED, { label: "speed", quiet: true });
     this.#play.addEventListener("click", () => client.press(names.PLAY));
+    // The thumb is as wide as a step, so that it stands in the middle of its column.
+    new ResizeObserver(() => this.#widen()).observe(this.#scrub);
     this.#scrub.addEventListener("input", () => client.choose(names.STEP, Number(this.#scrub.value)));
     this.element.append(
       h("div", { class: "transport" }, this.#play, this.#speed.element, this.#where),
@@ -44,14 +47,21 @@ export class Timeline {
     const step = Number(slider?.value ?? 1);
     if (Number(this.#scrub.value) !== step) this.#scrub.value = String(step);
     const playing = meta?.playing === true;
-    setText(this.#play, playing ? "❚❚" : "▶");
-    this.#play.setAttribute("aria-label", playing ? "pause" : "play");
+    const label = playing ? "pause" : "play";
+    if (this.#play.getAttribute("aria-label") !== label) {
+      this.#play.setAttribute("aria-label", label);
+      this.#play.replaceChildren(icon(label));
+    }
     this.#play.disabled = this.#client.element(names.PLAY)?.props["disabled"] === true;
     if (meta === undefined) return;
     const time = meta.secs === null ? "" : ` · ${fixed(meta.secs, 2)} s`;
     setText(this.#where, `step ${meta.step + 1} of ${meta.steps}${time}`);
     this.#scrub.setAttribute("aria-valuetext", this.#where.textContent ?? "");
     this.#draw(meta);
+  }
+
+  #widen(): void {
+    this.#scrub.style.setProperty("--column", `${this.#scrub.clientWidth / Math.max(1, Number(this.#scrub.max))}px`);
   }
 
   #draw(meta: Meta): void {
@@ -63,6 +73,7 @@ export class Timeline {
     const end = Math.min(steps - 1, start + horizon);
     const most = Math.max(...force.map((newtons) => newtons ?? 0), 1e-9);
     // A unit a step, and half a one beyond each end, so that a step is a column with its own middle.
+    this.#widen();
     this.#drawing.setAttribute("viewBox", `-0.5 0 ${steps} ${HEIGHT}`);
     const column = (cssClass: string, first: number, last: number, y: number, height: number) =>
       svg("rect", { class: cssClass, x: `${first - 0.5}`, width: `${last - first + 1}`, y: `${y}`, height: `${height}` });
