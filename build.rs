@@ -23,6 +23,9 @@ const SOURCES: [&str; 7] = [
     "vite.config.ts",
 ];
 
+/// npm writes it last.
+const INSTALLED: &str = "node_modules/.package-lock.json";
+
 fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed=build.rs");
     for variable in ["POESCOPE_WEB", "RA_RUSTC_WRAPPER"] {
@@ -32,12 +35,12 @@ fn main() -> io::Result<()> {
         println!("cargo:rerun-if-changed=web/{source}");
     }
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
-    let missing = match why_not() {
-        Some(reason) => Some(reason),
-        None => bundle(Path::new("web"), &out.join("web")).err(),
-    };
+    let missing = why_not().or_else(|| {
+        let failed = bundle(Path::new("web"), &out.join("web")).err()?;
+        println!("cargo:warning=the page of `serve` is left out: {failed}");
+        Some(failed)
+    });
     let generated = if let Some(reason) = missing {
-        println!("cargo:warning=the page of `serve` is left out: {reason}");
         let page = out.join("missing.html");
         fs::write(&page, plain_page(&reason))?;
         listing(&out, &[page])
@@ -81,6 +84,9 @@ fn bundle(web: &Path, work: &Path) -> Result<(), String> {
     {
         return Err("npm is not installed; install Node.js (20.19 or newer), then `touch build.rs` and build again".to_owned());
     }
+    // The packages of the last time will do while they are those of the lockfile.
+    let lock = |folder: &Path| fs::read(folder.join("package-lock.json")).ok();
+    let installed = lock(work) == lock(web) && work.join(INSTALLED).is_file();
     let copied = (|| {
         fs::create_dir_all(work)?;
         // Whatever was deleted there must not live on here.
@@ -100,7 +106,9 @@ fn bundle(web: &Path, work: &Path) -> Result<(), String> {
         "--no-fund",
         "--loglevel=error",
     ];
-    run(Command::new(npm).arg("ci").args(quiet), work)?;
+    if !installed {
+        run(Command::new(npm).arg("ci").args(quiet), work)?;
+    }
     run(
         Command::new("node")
             .args([
@@ -116,7 +124,7 @@ fn bundle(web: &Path, work: &Path) -> Result<(), String> {
         .map_err(|error| format!("{} cannot be written: {error}", stamp.display()))
 }
 
-/// Runs it to its end; what it said last is the error.
+/// Runs it to its end; what it said first is the error.
 fn run(command: &mut Command, folder: &Path) -> Result<(), String> {
     let name = format!("{command:?}");
     let output = command.current_dir(folder).stdin(Stdio::null()).output();
@@ -126,14 +134,14 @@ fn run(command: &mut Command, folder: &Path) -> Result<(), String> {
     }
     let said = [output.stdout, output.stderr].concat();
     let said = String::from_utf8_lossy(&said);
-    let last: Vec<&str> = said
+    let lines: Vec<&str> = said
         .lines()
         .map(str::trim)
         .filter(|line| !line.is_empty())
         .collect();
-    let last = last[last.len().saturating_sub(4)..].join(" · ");
+    let first = lines[..lines.len().min(4)].join(" · ");
     Err(format!(
-        "{name} failed ({}): {last}; `touch build.rs` to try again",
+        "{name} failed ({}): {first}; `touch build.rs` to try again",
         output.status
     ))
 }
