@@ -2,6 +2,7 @@
 import { Charts } from "./charts/charts";
 import type { Client } from "./client";
 import { Keyboard } from "./keyboard";
+import type { FaceAnswer } from "./meta";
 import { EPISODE } from "./names";
 import type { Status } from "./protocol/connection";
 import { SceneView } from "./scene/scene";
@@ -22,6 +23,7 @@ import { AddressBar, urlOfState } from "./url";
 export class App {
   readonly #client: Client;
   readonly #root: HTMLElement;
+  readonly #main: HTMLElement;
   readonly #header: Header;
   readonly #frames: Frames;
   readonly #experts: Experts;
@@ -36,8 +38,8 @@ export class App {
   readonly #address = new AddressBar();
   #status: Status = { kind: "connecting", attempt: 1 };
   #asked = false;
-  /** The last key whose answer's face command was done. */
-  #done = 0;
+  /** The answer whose face command was done last. */
+  #done: FaceAnswer | undefined;
 
   constructor(root: HTMLElement, client: Client) {
     this.#client = client;
@@ -58,8 +60,12 @@ export class App {
     this.#palette = new Palette(client);
     const chart = (name: Parameters<Charts["element"]>[0]) => this.#charts.element(name);
     const section = (place: string, label: string, ...children: HTMLElement[]) =>
-      h("section", { class: `pane charts ${place}`, "data-pane": "charts", "aria-label": label, tabindex: "0" }, ...children);
-    const main = h(
+      h(
+        "section",
+        { class: `pane charts ${place}`, "data-pane": "charts", "aria-label": label, tabindex: "0" },
+        ...children,
+      );
+    this.#main = h(
       "main",
       {},
       h("div", { class: "side" }, this.#experts.element, this.#settings.element),
@@ -68,9 +74,20 @@ export class App {
       this.#scene.element,
       section("right", "Position", chart("position"), chart("horizon")),
     );
-    this.#panes = new Panes(main);
-    root.append(this.#header.element, main, h("footer", {}, this.#timeline.element, this.#notices.line), this.#notices.element, this.#palette.element, this.#help.element);
-    new Keyboard(client, (command) => this.#face(command), () => this.#help.open);
+    this.#panes = new Panes(this.#main);
+    root.append(
+      this.#header.element,
+      this.#main,
+      h("footer", {}, this.#timeline.element, this.#notices.line),
+      this.#notices.element,
+      this.#palette.element,
+      this.#help.element,
+    );
+    new Keyboard(
+      client,
+      (command) => this.#face(command),
+      () => this.#help.open,
+    );
     startTooltips();
     onTheme(() => {
       this.#charts.retint();
@@ -101,9 +118,12 @@ export class App {
     const open = this.#status.kind === "open";
     // What was seen last stays while the connection is away, marked as old.
     this.#root.classList.toggle("away", !open);
+    this.#main.inert = !open;
+    this.#timeline.element.inert = !open;
+    if (!open) this.#palette.update(null);
     this.#header.update(statusText(this.#status), open);
-    // While a new connection's replay is under way there is only half a state.
-    if (!client.store.complete) return;
+    // Between losing the old connection and the end of the new one's replay nothing is brought up to date.
+    if (!open || !client.store.complete) return;
     const changes = client.store.takeChanges();
     this.#experts.update();
     this.#settings.update();
@@ -115,9 +135,9 @@ export class App {
     if (changes.notices) this.#notices.updateNotices();
     const { answer } = client;
     this.#palette.update(answer?.palette ?? null);
-    if (answer !== undefined && answer.n !== this.#done) {
-      this.#done = answer.n;
-      if (answer.face !== null) this.#face(answer.face);
+    if (answer !== this.#done) {
+      this.#done = answer;
+      if (answer !== undefined && answer.face !== null) this.#face(answer.face);
     }
     this.#address.show(client.state);
     const meta = client.meta;
@@ -160,7 +180,8 @@ export class App {
   #copy(): void {
     const url = new URL(urlOfState(new URL(location.href), this.#client.state), location.href).href;
     const said = navigator.clipboard?.writeText(url);
-    if (said === undefined) return this.#notices.say("this browser lets no page copy; the address bar has the same link");
+    if (said === undefined)
+      return this.#notices.say("this browser lets no page copy; the address bar has the same link");
     said.then(
       () => this.#notices.say("copied a link to this state"),
       () => this.#notices.say("the browser refused to copy; the address bar has the same link", true),

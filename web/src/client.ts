@@ -22,6 +22,13 @@ export class Client {
     this.#send = send;
   }
 
+  /** A new connection: the server says everything again, and counts keys from the first one. */
+  opened(): void {
+    this.store.reset();
+    this.#waiting.clear();
+    this.#counter = 0;
+  }
+
   /** A control of this uuid, if the server has sent one. */
   element(uuid: string): GuiElement | undefined {
     return this.store.gui.get(uuid);
@@ -89,7 +96,12 @@ export class Client {
   }
 
   /** An instance of a node of the scene. */
-  clickNode(name: string, instance: number, ray: { origin: number[]; direction: number[] }, at: [number, number]): void {
+  clickNode(
+    name: string,
+    instance: number,
+    ray: { origin: number[]; direction: number[] },
+    at: [number, number],
+  ): void {
     this.#send({
       type: "SceneNodeClickMessage",
       name,

@@ -25,7 +25,10 @@ export function rgbOf(css: string): Rgb | undefined {
   const brief = /^#([0-9a-f])([0-9a-f])([0-9a-f])$/i.exec(css);
   if (brief) return [1, 2, 3].map((i) => parseInt(`${brief[i]}${brief[i]}`, 16)) as Rgb;
   const call = /^rgba?\(([^)]*)\)$/.exec(css);
-  const parts = call?.[1]?.split(/[\s,/]+/).filter(Boolean).map(Number);
+  const parts = call?.[1]
+    ?.split(/[\s,/]+/)
+    .filter(Boolean)
+    .map(Number);
   return parts && parts.length >= 3 && parts.slice(0, 3).every(Number.isFinite)
     ? (parts.slice(0, 3) as Rgb)
     : undefined;

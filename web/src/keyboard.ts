@@ -37,12 +37,20 @@ export class Keyboard {
     const mode = answer?.mode === true;
     if (mode || waiting) {
       // In a line or a mode nearly everything means something, but copying and the like stay the browser's.
-      if (/^<c-[^kp]>$/.test(name)) return;
+      if (/^<c-[^kp]>$/.test(name) || (!mode && /tab>$/.test(name))) return;
       event.preventDefault();
       return this.#client.key(name);
     }
+    // A control that was clicked gives the keyboard back; one that was tabbed to keeps what is its own.
+    const { target } = event;
+    if (
+      target instanceof HTMLElement &&
+      target.matches("button, input, select, summary") &&
+      !target.matches(":focus-visible, select")
+    )
+      target.blur();
     const line = keys.find((each) => each.keys.includes(name));
-    if (line === undefined || name === "<tab>" || name === "<s-tab>" || needed(event.target, name)) return;
+    if (line === undefined || name === "<tab>" || name === "<s-tab>" || needed(document.activeElement, name)) return;
     event.preventDefault();
     if (line.face === null) this.#client.key(name);
     else this.#face(line.face);
@@ -53,7 +61,9 @@ export class Keyboard {
 export function needed(target: EventTarget | null, name: string): boolean {
   if (!(target instanceof HTMLElement)) return false;
   if (name === "<enter>" || name === "<space>") {
-    return target.matches("button, select, summary, a") || (name === "<space>" && target.matches("input[type=checkbox]"));
+    return (
+      target.matches("button, select, summary, a") || (name === "<space>" && target.matches("input[type=checkbox]"))
+    );
   }
   if (target.matches("input[type=range]")) return /^<(left|right|up|down|home|end|pageup|pagedown)>$/.test(name);
   if (target.matches("select")) return name.length === 1 || /^<(up|down|home|end|esc)>$/.test(name);

@@ -19,7 +19,7 @@ let wanted = stateOf(location.search);
 const client = new Client((message) => connection.send(message));
 const app = new App(document.getElementById("app") as HTMLElement, client);
 const connection = new Connection(websocketUrl(page), {
-  opened: () => client.store.reset(),
+  opened: () => client.opened(),
   received(batch) {
     client.store.apply(batch.messages);
     if (client.store.complete && wanted !== undefined) {

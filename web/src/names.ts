@@ -23,8 +23,17 @@ export const CHARTS = ["shares", "latents", "position", "horizon", "psnr"] as co
 export type ChartName = (typeof CHARTS)[number];
 export const chartOf = (name: ChartName) => `poescope-chart-${name}`;
 
-export const ROLLOUT = ["poescope-context", "poescope-horizon", "poescope-predict-here", "poescope-sampled", "poescope-spread"];
-export const DAMAGE = ["vision", "haptic", "proprio"].flatMap((m) => [`poescope-damage-${m}`, `poescope-severity-${m}`]);
+export const ROLLOUT = [
+  "poescope-context",
+  "poescope-horizon",
+  "poescope-predict-here",
+  "poescope-sampled",
+  "poescope-spread",
+];
+export const DAMAGE = ["vision", "haptic", "proprio"].flatMap((m) => [
+  `poescope-damage-${m}`,
+  `poescope-severity-${m}`,
+]);
 export const FIND = ["failure-previous", "failure-next", "event-previous", "event-next", "undo", "redo"].map(
   (name) => `poescope-${name}`,
 );

@@ -22,7 +22,10 @@ export function urlOfState(page: URL, state: string): string {
  * have been pasted as it is.
  */
 export function stateOf(search: string): string | undefined {
-  const part = search.replace(/^\?/, "").split("&").find((each) => each.startsWith("state="));
+  const part = search
+    .replace(/^\?/, "")
+    .split("&")
+    .find((each) => each.startsWith("state="));
   if (part === undefined) return undefined;
   const raw = part.slice("state=".length);
   try {

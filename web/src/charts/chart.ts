@@ -52,7 +52,13 @@ export class Chart {
     this.#kind = kind;
     this.#onSeek = onSeek;
     const title = h("h3", explained(kind.term), kind.title);
-    this.element = h("figure", { class: "chart", id: `chart-${kind.name}` }, h("figcaption", {}, title, this.#legend), this.#box, this.#empty);
+    this.element = h(
+      "figure",
+      { class: "chart", id: `chart-${kind.name}` },
+      h("figcaption", {}, title, this.#legend),
+      this.#box,
+      this.#empty,
+    );
     new ResizeObserver(() => this.#resize()).observe(this.#box);
   }
 
@@ -108,13 +114,22 @@ export class Chart {
       ...this.#size(),
       padding: [4, 6, 0, 0],
       legend: { show: false },
-      cursor: { y: false, points: { show: drawing === "lines", size: 5 }, drag: { x: false, y: false }, ...(time ? { sync: { key: "steps" } } : {}) },
+      cursor: {
+        y: false,
+        points: { show: drawing === "lines", size: 5 },
+        drag: { x: false, y: false },
+        ...(time ? { sync: { key: "steps" } } : {}),
+      },
       scales: {
-        x: { time: false, range: (_, low, high) => margins(low, high, drawing === "dimensions" ? 1 : 0.02 * (high - low)) },
+        x: {
+          time: false,
+          range: (_, low, high) => margins(low, high, drawing === "dimensions" ? 1 : 0.02 * (high - low)),
+        },
         y: y === undefined ? {} : { range: (_, low, high) => [y[0] ?? low, y[1] ?? high] },
       },
       series: chart.series.map((series, i) => (i === 0 ? {} : seriesOptions(series, drawing))),
-      bands: drawing === "lines" ? chart.bands.map(({ series, fill }) => ({ series, fill: fill ?? token("--wash") })) : [],
+      bands:
+        drawing === "lines" ? chart.bands.map(({ series, fill }) => ({ series, fill: fill ?? token("--wash") })) : [],
       axes: [
         { ...axis, size: 20, space: 36, incrs: [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] },
         { ...axis, size: 38, space: 24, values: (_, ticks) => ticks.map((tick) => tick.toString().replace("-", "−")) },
@@ -157,7 +172,8 @@ export class Chart {
     const now = Array.from(chart.data[0]).indexOf(this.#view?.now ?? Number.NaN);
     const at = this.#hover ?? (now < 0 ? undefined : now);
     const items = legendItems(chart, drawing, this.#view?.experts ?? [], at);
-    const here = this.#hover === undefined ? [] : [h("span", { class: "at number" }, `${x} ${chart.data[0][this.#hover] ?? ""}`)];
+    const here =
+      this.#hover === undefined ? [] : [h("span", { class: "at number" }, `${x} ${chart.data[0][this.#hover] ?? ""}`)];
     this.#legend.replaceChildren(...here, ...items);
     this.#box.setAttribute("aria-label", `${title}: ${items.map((item) => item.textContent).join(", ")}`);
     setText(this.#empty, "nothing to draw here yet");
@@ -169,7 +185,8 @@ export class Chart {
 
   #resize(): void {
     const size = this.#size();
-    if (this.#plot !== undefined && (this.#plot.width !== size.width || this.#plot.height !== size.height)) this.#plot.setSize(size);
+    if (this.#plot !== undefined && (this.#plot.width !== size.width || this.#plot.height !== size.height))
+      this.#plot.setSize(size);
   }
 }
 

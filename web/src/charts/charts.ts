@@ -5,8 +5,22 @@ import { Chart, type ChartKind } from "./chart";
 
 const KINDS: Record<ChartName, ChartKind> = {
   shares: { name: "shares", term: "share", title: "share of precision", x: "step", time: true, drawing: "stack" },
-  latents: { name: "latents", term: "latents", title: "belief by latent dimension", x: "dim", time: false, drawing: "dimensions" },
-  position: { name: "position", term: "position", title: "position error, cm", x: "step", time: true, drawing: "lines" },
+  latents: {
+    name: "latents",
+    term: "latents",
+    title: "belief by latent dimension",
+    x: "dim",
+    time: false,
+    drawing: "dimensions",
+  },
+  position: {
+    name: "position",
+    term: "position",
+    title: "position error, cm",
+    x: "step",
+    time: true,
+    drawing: "lines",
+  },
   horizon: { name: "horizon", term: "horizon", title: "by steps ahead, cm", x: "ahead", time: false, drawing: "lines" },
   psnr: { name: "psnr", term: "psnr", title: "PSNR, dB", x: "step", time: true, drawing: "lines" },
 };

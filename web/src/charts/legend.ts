@@ -10,7 +10,12 @@ import { below, expertOf } from "./stack";
 export type Drawing = "lines" | "stack" | "dimensions";
 
 /** One element for each series that has a name; `at` is the index whose values are read. */
-export function legendItems(chart: Described, drawing: Drawing, experts: readonly ExpertMeta[], at: number | undefined): HTMLElement[] {
+export function legendItems(
+  chart: Described,
+  drawing: Drawing,
+  experts: readonly ExpertMeta[],
+  at: number | undefined,
+): HTMLElement[] {
   return chart.series.flatMap((series, i) => {
     if (i === 0 || !named(series, drawing)) return [];
     const expert = expertOf(series, experts);
@@ -22,7 +27,11 @@ export function legendItems(chart: Described, drawing: Drawing, experts: readonl
 
 /** Edges of bands without a line of their own, and what is hidden, have no entry. */
 function named(series: Series, drawing: Drawing): boolean {
-  return series.show && series.label !== "" && (drawing === "stack" || series.stroke !== undefined || series.fill !== undefined);
+  return (
+    series.show &&
+    series.label !== "" &&
+    (drawing === "stack" || series.stroke !== undefined || series.fill !== undefined)
+  );
 }
 
 function swatch(series: Series, drawing: Drawing, expert: ExpertMeta | undefined): HTMLElement {

@@ -47,7 +47,9 @@ export function described(props: Readonly<Record<string, unknown>>): Described |
     const map = mapOf(band);
     const pair = listOf(map?.["series"]).map((i) => place.get(Number(i)));
     const [upper, lower] = pair;
-    return upper === undefined || lower === undefined ? [] : [{ series: [upper, lower] as [number, number], fill: textOf(map?.["fill"]) }];
+    return upper === undefined || lower === undefined
+      ? []
+      : [{ series: [upper, lower] as [number, number], fill: textOf(map?.["fill"]) }];
   });
   const axes = listOf(props["axes"]).map(mapOf);
   return {
@@ -68,7 +70,8 @@ export function shapeOf({ series, bands, ranges, xLabel, yLabel }: Described): s
 
 /** Numbers with holes where they are not finite: uPlot draws over NaN, and one infinity blanks a chart. */
 function column(value: unknown): (number | null)[] {
-  const numbers: ArrayLike<unknown> = Array.isArray(value) || ArrayBuffer.isView(value) ? (value as unknown as ArrayLike<unknown>) : [];
+  const numbers: ArrayLike<unknown> =
+    Array.isArray(value) || ArrayBuffer.isView(value) ? (value as unknown as ArrayLike<unknown>) : [];
   return Array.from(numbers, (n) => (typeof n === "number" && Number.isFinite(n) ? n : null));
 }
 

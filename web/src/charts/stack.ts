@@ -20,7 +20,8 @@ export function drawStack(plot: uPlot, chart: Described, experts: readonly Exper
     const floor = below(chart, s);
     const expert = expertOf(chart.series[s], experts);
     const color = expert?.color ?? themed(chart.series[s]?.stroke ?? "#999999");
-    ctx.fillStyle = ctx.createPattern(tile(color, fillOf(expert?.fill ?? "█"), ground, devicePixelRatio), "repeat") ?? color;
+    ctx.fillStyle =
+      ctx.createPattern(tile(color, fillOf(expert?.fill ?? "█"), ground, devicePixelRatio), "repeat") ?? color;
     ctx.strokeStyle = ground;
     ctx.lineWidth = devicePixelRatio;
     for (const [from, to] of runs(top)) {

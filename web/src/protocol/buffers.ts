@@ -2,14 +2,7 @@
 import { ProtocolError } from "./error";
 
 type Numbers =
-  | Float32Array
-  | Float64Array
-  | Uint8Array
-  | Int8Array
-  | Uint16Array
-  | Int16Array
-  | Uint32Array
-  | Int32Array;
+  Float32Array | Float64Array | Uint8Array | Int8Array | Uint16Array | Int16Array | Uint32Array | Int32Array;
 
 const VIEWS: Record<string, { new (buffer: ArrayBuffer): Numbers; BYTES_PER_ELEMENT: number }> = {
   "<f4": Float32Array,

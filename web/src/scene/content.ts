@@ -36,7 +36,12 @@ const MAKERS: Record<string, Maker> = {
     solid(new IcosahedronGeometry(number(props["radius"], 1), Math.min(4, number(props["subdivisions"], 3))), props),
   CylinderMessage: (props) => {
     const radius = number(props["radius"], 1);
-    const geometry = new CylinderGeometry(radius, radius, number(props["height"], 1), number(props["radial_segments"], 32));
+    const geometry = new CylinderGeometry(
+      radius,
+      radius,
+      number(props["height"], 1),
+      number(props["radial_segments"], 32),
+    );
     return solid(geometry.rotateX(Math.PI / 2), props);
   },
   MeshMessage: (props) => solid(meshGeometry(props), props),
@@ -118,7 +123,8 @@ function arrows(props: Props): Object3D {
     const along = new Vector3(...points.subarray(i * 6 + 3, i * 6 + 6)).sub(from);
     const whole = along.length();
     if (!(whole > 1e-6)) continue;
-    const own = given.length >= (i + 1) * 3 && given.length > 3 ? given.subarray(i * 3, i * 3 + 3) : given.subarray(0, 3);
+    const own =
+      given.length >= (i + 1) * 3 && given.length > 3 ? given.subarray(i * 3, i * 3 + 3) : given.subarray(0, 3);
     const tip = Math.min(length, whole * 0.6);
     const material = new MeshLambertMaterial({ color: ink([...own]) });
     const stem = new CylinderGeometry(shaft, shaft, whole - tip, 12).translate(0, (whole - tip) / 2, 0);
@@ -137,11 +143,16 @@ function grid(props: Props): Object3D {
   const net = (step: number, color: unknown) => {
     const ends: number[] = [];
     if (step > 0 && (width + height) / step < 2000) {
-      for (let x = Math.ceil(-width / 2 / step) * step; x <= width / 2 + 1e-9; x += step) ends.push(x, -height / 2, 0, x, height / 2, 0);
-      for (let y = Math.ceil(-height / 2 / step) * step; y <= height / 2 + 1e-9; y += step) ends.push(-width / 2, y, 0, width / 2, y, 0);
+      for (let x = Math.ceil(-width / 2 / step) * step; x <= width / 2 + 1e-9; x += step)
+        ends.push(x, -height / 2, 0, x, height / 2, 0);
+      for (let y = Math.ceil(-height / 2 / step) * step; y <= height / 2 + 1e-9; y += step)
+        ends.push(-width / 2, y, 0, width / 2, y, 0);
     }
     const geometry = new BufferGeometry().setAttribute("position", new BufferAttribute(new Float32Array(ends), 3));
-    return new LineSegments(geometry, new LineBasicMaterial({ color: colorOf(color), transparent: true, opacity: 0.5 }));
+    return new LineSegments(
+      geometry,
+      new LineBasicMaterial({ color: colorOf(color), transparent: true, opacity: 0.5 }),
+    );
   };
   return new Group().add(
     net(number(props["cell_size"], 0.5), props["cell_color"]),

@@ -1,5 +1,14 @@
 /** The table in three dimensions: the server's nodes, orbit controls, clicks on the path. Draws only when something changed. */
-import { AmbientLight, DirectionalLight, Group, type Object3D, PerspectiveCamera, Scene, Vector3, WebGLRenderer } from "three";
+import {
+  AmbientLight,
+  DirectionalLight,
+  Group,
+  type Object3D,
+  PerspectiveCamera,
+  Scene,
+  Vector3,
+  WebGLRenderer,
+} from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Client } from "../client";
 import { fixed } from "../format";
@@ -37,9 +46,19 @@ export class SceneView {
 
   constructor(client: Client) {
     this.#client = client;
-    const reset = h("button", { type: "button", "aria-label": "reset the view", title: "reset the view" }, icon("reset"));
+    const reset = h(
+      "button",
+      { type: "button", "aria-label": "reset the view", title: "reset the view" },
+      icon("reset"),
+    );
     reset.addEventListener("click", () => this.#place());
-    const legend = h("span", { class: "legend" }, ...LEGEND.map(([cssClass, text]) => h("span", {}, h("i", { class: `swatch ${cssClass}`, "aria-hidden": "true" }), text)));
+    const legend = h(
+      "span",
+      { class: "legend" },
+      ...LEGEND.map(([cssClass, text]) =>
+        h("span", {}, h("i", { class: `swatch ${cssClass}`, "aria-hidden": "true" }), text),
+      ),
+    );
     this.element = h(
       "section",
       { class: "pane scene", "data-pane": "scene", "aria-label": "Table", tabindex: "0" },
@@ -68,7 +87,10 @@ export class SceneView {
     }
     const meta = this.#client.meta;
     const error = meta?.position_error_cm?.[meta.error_of];
-    this.#canvas.setAttribute("aria-label", `The table; the ${meta?.error_of ?? "belief"} is ${fixed(error, 1)} cm from the plate`);
+    this.#canvas.setAttribute(
+      "aria-label",
+      `The table; the ${meta?.error_of ?? "belief"} is ${fixed(error, 1)} cm from the plate`,
+    );
     if (changed.size > 0 || reset) this.invalidate();
   }
 
@@ -136,7 +158,8 @@ export class SceneView {
   #hold(name: string): Shown {
     const holder = new Group();
     const parent = name.slice(0, Math.max(0, name.lastIndexOf("/")));
-    const above = name === "" ? this.#root : parent === "" ? this.#root : (this.#shown.get(parent) ?? this.#hold(parent)).holder;
+    const above =
+      name === "" ? this.#root : parent === "" ? this.#root : (this.#shown.get(parent) ?? this.#hold(parent)).holder;
     above.add(holder);
     const shown: Shown = { holder, content: undefined, props: undefined, type: undefined };
     this.#shown.set(name, shown);

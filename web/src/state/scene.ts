@@ -17,9 +17,11 @@ export interface SceneNode {
 }
 
 const CREATED = new Set(
-  ("Frame Box Icosphere Cylinder Mesh BatchedMeshes PointCloud LineSegments Arrow CatmullRomSpline CubicBezierSpline " +
+  (
+    "Frame Box Icosphere Cylinder Mesh BatchedMeshes PointCloud LineSegments Arrow CatmullRomSpline CubicBezierSpline " +
     "BatchedAxes Grid Label Image CameraFrustum DirectionalLight AmbientLight HemisphereLight PointLight RectAreaLight " +
-    "SpotLight Glb BatchedGlb SkinnedMesh GaussianSplats TransformControls Gui3D")
+    "SpotLight Glb BatchedGlb SkinnedMesh GaussianSplats TransformControls Gui3D"
+  )
     .split(" ")
     .map((name) => `${name}Message`),
 );

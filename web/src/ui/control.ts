@@ -38,7 +38,13 @@ export function control(client: Client, uuid: string, options: Options = {}): Co
   };
 }
 
-function make(client: Client, uuid: string, type: string, parent: HTMLElement, options: Options): (gui: GuiElement) => void {
+function make(
+  client: Client,
+  uuid: string,
+  type: string,
+  parent: HTMLElement,
+  options: Options,
+): (gui: GuiElement) => void {
   parent.replaceChildren();
   switch (type) {
     case "GuiSliderMessage":
@@ -115,7 +121,11 @@ function dropdown(client: Client, uuid: string, parent: HTMLElement, options: Op
     const names = gui.props["options"];
     if (Array.isArray(names) && names !== listed) {
       listed = names;
-      choices.update(names.map(String), (name) => name, (name) => h("option", { value: name }, name));
+      choices.update(
+        names.map(String),
+        (name) => name,
+        (name) => h("option", { value: name }, name),
+      );
     }
     if (input.value !== String(gui.value)) input.value = String(gui.value);
     input.disabled = gui.props["disabled"] === true;

@@ -10,7 +10,12 @@ import { LatentShares } from "./shares";
 import { explained } from "./term";
 
 export class Experts {
-  readonly element = h("section", { class: "pane experts", "data-pane": "experts", "aria-label": "Experts", tabindex: "0" });
+  readonly element = h("section", {
+    class: "pane experts",
+    "data-pane": "experts",
+    "aria-label": "Experts",
+    tabindex: "0",
+  });
   readonly #client: Client;
   readonly #rows = h("ol", { class: "rows" });
   readonly #keyed = new Keyed<ExpertMeta>(this.#rows);
@@ -47,12 +52,19 @@ export class Experts {
     setText(this.#badge, badgeText(meta));
     this.#badge.dataset["kind"] = meta?.badge.kind ?? "";
     this.#badge.title = meta?.badge.kind === "untrained" ? meta.badge.text : "";
-    setText(this.#empty, meta !== undefined && !meta.model.product ? "This model has no product: nothing to switch." : "");
-    const rows = this.#keyed.update(meta?.experts ?? [], (expert) => expert.name, (expert) => {
-      const row = new Row(this.#client, expert);
-      this.#made.set(row.element, row);
-      return row.element;
-    });
+    setText(
+      this.#empty,
+      meta !== undefined && !meta.model.product ? "This model has no product: nothing to switch." : "",
+    );
+    const rows = this.#keyed.update(
+      meta?.experts ?? [],
+      (expert) => expert.name,
+      (expert) => {
+        const row = new Row(this.#client, expert);
+        this.#made.set(row.element, row);
+        return row.element;
+      },
+    );
     for (const element of this.#made.keys()) if (!element.isConnected) this.#made.delete(element);
     const answer = this.#client.answer;
     rows.forEach((element, i) => {

@@ -7,7 +7,12 @@ import { h, setHidden, setText } from "./dom";
 import { explained } from "./term";
 
 export class Frames {
-  readonly element = h("section", { class: "pane frames", "data-pane": "frames", "aria-label": "Frames", tabindex: "0" });
+  readonly element = h("section", {
+    class: "pane frames",
+    "data-pane": "frames",
+    "aria-label": "Frames",
+    tabindex: "0",
+  });
   readonly #client: Client;
   readonly #slots: Slot[];
 
@@ -40,7 +45,12 @@ class Slot {
     this.#name = name;
     this.#canvas = h("canvas", { role: "img", width: "256", height: "256", id: `frame-${name}` });
     const caption = h("figcaption", {}, h("span", explained(name), this.#title), this.#note);
-    this.element = h("figure", { class: `frame frame-${name}` }, caption, h("div", { class: "picture" }, this.#canvas, this.#empty));
+    this.element = h(
+      "figure",
+      { class: `frame frame-${name}` },
+      caption,
+      h("div", { class: "picture" }, this.#canvas, this.#empty),
+    );
   }
 
   update(client: Client, meta: Meta | undefined): void {
@@ -56,7 +66,8 @@ class Slot {
     if (bytes !== this.#data) {
       this.#data = bytes;
       this.#turn += 1;
-      if (bytes !== undefined) void this.#draw(bytes as Uint8Array<ArrayBuffer>, String(gui?.props["_format"] ?? "png"), this.#turn);
+      if (bytes !== undefined)
+        void this.#draw(bytes as Uint8Array<ArrayBuffer>, String(gui?.props["_format"] ?? "png"), this.#turn);
     }
   }
 
@@ -93,7 +104,9 @@ function noteOf(name: FrameName, meta: Meta, label: string): string {
     case "belief":
       return withUnit(meta.psnr_db?.belief, 1, "dB").replace("–", "");
     case "prediction":
-      return [ahead(meta.step, meta.start), withUnit(meta.psnr_db?.prediction, 1, "dB").replace("–", "")].join(" ").trim();
+      return [ahead(meta.step, meta.start), withUnit(meta.psnr_db?.prediction, 1, "dB").replace("–", "")]
+        .join(" ")
+        .trim();
     case "error":
       return `${/±\s*[\d.]+/.exec(label)?.[0] ?? ""} ${meta.error_of}`.trim();
     default:
@@ -103,11 +116,14 @@ function noteOf(name: FrameName, meta: Meta, label: string): string {
 
 function whyEmpty(name: FrameName, meta: Meta | undefined): string {
   if (meta === undefined || meta.episode === null) return "";
-  if (meta.episode.missing.length > 0) return name === "truth" ? "no frame" : "the recording lacks what the model needs";
+  if (meta.episode.missing.length > 0)
+    return name === "truth" ? "no frame" : "the recording lacks what the model needs";
   if (name === "prediction") {
     const first = meta.start + 2;
     const last = Math.min(meta.start + 1 + meta.horizon, meta.steps);
-    return first <= last ? `none at this step: predicted are ${first} to ${last}` : "none: the rollout starts at the last step";
+    return first <= last
+      ? `none at this step: predicted are ${first} to ${last}`
+      : "none: the rollout starts at the last step";
   }
   if (name === "belief") return "the first belief comes later";
   return name === "error" ? "nothing to compare yet" : fixed(null, 0);

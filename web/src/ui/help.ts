@@ -20,7 +20,11 @@ export class Help {
     this.element.append(
       h("header", {}, h("h2", {}, "Keys"), close),
       this.#keys,
-      h("p", { class: "note" }, "Tab goes through the page's own controls. Ctrl+R stays the browser's; redo is a button, and a command."),
+      h(
+        "p",
+        { class: "note" },
+        "Tab goes through the page's own controls. Ctrl+R stays the browser's; redo is a button, and a command.",
+      ),
       h("h2", {}, "What is shown"),
       h("div", { class: "terms" }, ...terms),
     );

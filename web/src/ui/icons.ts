@@ -18,8 +18,21 @@ const FILLED = new Set(["play", "pause"]);
 export type IconName = keyof typeof PATHS;
 
 export function icon(name: IconName): SVGSVGElement {
-  const attributes = FILLED.has(name) ? { fill: "currentColor" } : { fill: "none", stroke: "currentColor", "stroke-width": "1.5", "stroke-linecap": "round", "stroke-linejoin": "round" };
+  const attributes = FILLED.has(name)
+    ? { fill: "currentColor" }
+    : {
+        fill: "none",
+        stroke: "currentColor",
+        "stroke-width": "1.5",
+        "stroke-linecap": "round",
+        "stroke-linejoin": "round",
+      };
   const shape = svg("path", { d: PATHS[name], ...attributes });
   const half = name === "theme" ? [svg("path", { d: "M8 2.5a5.5 5.5 0 0 1 0 11z", fill: "currentColor" })] : [];
-  return svg("svg", { viewBox: "0 0 16 16", width: "16", height: "16", "aria-hidden": "true", class: "icon" }, shape, ...half);
+  return svg(
+    "svg",
+    { viewBox: "0 0 16 16", width: "16", height: "16", "aria-hidden": "true", class: "icon" },
+    shape,
+    ...half,
+  );
 }

@@ -7,7 +7,12 @@ import type { Notice } from "../state/notices";
 const LINE_SECS = 6;
 
 export class Notices {
-  readonly element = h("div", { class: "notices", role: "region", "aria-label": "Notifications", "aria-live": "polite" });
+  readonly element = h("div", {
+    class: "notices",
+    role: "region",
+    "aria-label": "Notifications",
+    "aria-live": "polite",
+  });
   /** The line at the foot of the page. */
   readonly line = h("div", { class: "line", role: "status" });
   readonly #client: Client;
@@ -57,7 +62,11 @@ export class Notices {
   /** Called when notifications changed, not with every step. */
   updateNotices(): void {
     const notices = [...this.#client.store.notices.values()];
-    const elements = this.#keyed.update(notices, ({ uuid }) => uuid, ({ uuid }) => this.#make(uuid));
+    const elements = this.#keyed.update(
+      notices,
+      ({ uuid }) => uuid,
+      ({ uuid }) => this.#make(uuid),
+    );
     notices.forEach((notice, i) => {
       const element = elements[i];
       if (element === undefined) return;

@@ -28,7 +28,13 @@ export class Palette {
   constructor(client: Client) {
     this.#client = client;
     const foot = h("p", { class: "note" }, "Enter does it · Tab completes · Esc closes");
-    this.element = h("div", { class: "palette", role: "dialog", "aria-label": "Commands", hidden: true }, this.#input, this.#list, foot);
+    this.element = h(
+      "div",
+      { class: "palette", role: "dialog", "aria-label": "Commands", hidden: true },
+      this.#input,
+      this.#list,
+      foot,
+    );
     this.#input.addEventListener("beforeinput", (event) => this.#typed(event));
     this.#list.addEventListener("pointerdown", (event) => event.preventDefault());
     this.#list.addEventListener("click", (event) => this.#clicked(event));
@@ -67,7 +73,15 @@ export class Palette {
           { role: "option", id: `palette-${i}`, "aria-selected": String(chosen), "data-entry": String(i) },
           h("span", { class: "name" }, entry.name),
           h("span", { class: "help" }, entry.help),
-          ...(entry.keys === "" ? [] : [h("span", { class: "keys" }, ...entry.keys.split(" ").map((key) => (key === "…" ? "…" : h("kbd", {}, key))))]),
+          ...(entry.keys === ""
+            ? []
+            : [
+                h(
+                  "span",
+                  { class: "keys" },
+                  ...entry.keys.split(" ").map((key) => (key === "…" ? "…" : h("kbd", {}, key))),
+                ),
+              ]),
         );
         return item;
       }),

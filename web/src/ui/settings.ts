@@ -20,15 +20,22 @@ export class Settings {
     const meta = () => client.meta;
     this.#fold("Prediction", names.ROLLOUT, "context", () => {
       const now = meta();
-      return now === undefined ? "" : `${now.context} seen, ${now.horizon} ahead${now.sampling.shown ? ", a sample" : ""}`;
+      return now === undefined
+        ? ""
+        : `${now.context} seen, ${now.horizon} ahead${now.sampling.shown ? ", a sample" : ""}`;
     });
-    this.#fold("Damaged inputs", names.DAMAGE, "damage", () =>
-      (meta()?.corruptions ?? []).map(({ modality, damage }) => `${modality} ${damage}`).join(", ") || "none",
+    this.#fold(
+      "Damaged inputs",
+      names.DAMAGE,
+      "damage",
+      () => (meta()?.corruptions ?? []).map(({ modality, damage }) => `${modality} ${damage}`).join(", ") || "none",
     );
     this.#fold("Find, undo", names.FIND, undefined, () => {
       const failure = meta()?.failure;
       const place = failure?.place ?? null;
-      return failure === undefined ? "" : `by ${failure.order}${place === null ? "" : `, ${place + 1} of ${failure.count}`}`;
+      return failure === undefined
+        ? ""
+        : `by ${failure.order}${place === null ? "" : `, ${place + 1} of ${failure.count}`}`;
     });
     this.#moreFold = h("details", { class: "fold" }, h("summary", {}, "More"), this.#more);
     this.element.append(this.#moreFold);
@@ -53,18 +60,28 @@ export class Settings {
       .filter(({ uuid, type, props }) => !known(uuid) && SHOWN.has(type) && props["visible"] !== false)
       .map(({ uuid }) => uuid);
     setHidden(this.#moreFold, unknown.length === 0);
-    this.#keyed.update(unknown, (uuid) => uuid, (uuid) => {
-      const made = control(this.#client, uuid);
-      this.#others.set(uuid, made);
-      return made.element;
-    });
+    this.#keyed.update(
+      unknown,
+      (uuid) => uuid,
+      (uuid) => {
+        const made = control(this.#client, uuid);
+        this.#others.set(uuid, made);
+        return made.element;
+      },
+    );
     unknown.forEach((uuid) => this.#others.get(uuid)?.update());
   }
 }
 
 const ROOMY_PX = 900;
 
-const SHOWN = new Set(["GuiSliderMessage", "GuiNumberMessage", "GuiCheckboxMessage", "GuiDropdownMessage", "GuiButtonMessage"]);
+const SHOWN = new Set([
+  "GuiSliderMessage",
+  "GuiNumberMessage",
+  "GuiCheckboxMessage",
+  "GuiDropdownMessage",
+  "GuiButtonMessage",
+]);
 
 const KNOWN = new Set([
   ...[names.STATUS, names.EPISODE, names.MODEL, names.STEP, names.PLAY, names.SPEED, names.PROGRESS, names.SCOPE],

@@ -24,7 +24,9 @@ export class LatentShares {
     const count = experts[0]?.share.length ?? 0;
     setHidden(this.element, count === 0);
     if (count !== this.#columns.length || this.#columns[0]?.childElementCount !== experts.length) {
-      this.#columns = Array.from({ length: count }, () => h("div", {}, ...experts.map(() => h("span", { class: "fill" }))));
+      this.#columns = Array.from({ length: count }, () =>
+        h("div", {}, ...experts.map(() => h("span", { class: "fill" }))),
+      );
       this.#bars.replaceChildren(...this.#columns);
     }
     this.#columns.forEach((column, d) => {

@@ -15,7 +15,14 @@ export class Timeline {
   readonly element = h("section", { class: "timeline", "data-pane": "timeline", "aria-label": "Time" });
   readonly #client: Client;
   readonly #play = h("button", { type: "button", class: "play" });
-  readonly #scrub = h("input", { type: "range", class: "scrub", min: "1", step: "1", id: names.STEP, "aria-label": "step" });
+  readonly #scrub = h("input", {
+    type: "range",
+    class: "scrub",
+    min: "1",
+    step: "1",
+    id: names.STEP,
+    "aria-label": "step",
+  });
   readonly #drawing = svg("svg", { class: "track", preserveAspectRatio: "none", "aria-hidden": "true" });
   readonly #marks = h("div", { class: "marks", "aria-hidden": "true" });
   readonly #where = h("output", { class: "where number", for: names.STEP });
@@ -29,6 +36,7 @@ export class Timeline {
     this.#play.addEventListener("click", () => client.press(names.PLAY));
     // The thumb is as wide as a step, so that it stands in the middle of its column.
     new ResizeObserver(() => this.#widen()).observe(this.#scrub);
+    this.element.addEventListener("wheel", (event) => this.#wheeled(event), { passive: false });
     this.#scrub.addEventListener("input", () => client.choose(names.STEP, Number(this.#scrub.value)));
     this.element.append(
       h("div", { class: "transport" }, this.#play, this.#speed.element, this.#where),
@@ -60,6 +68,14 @@ export class Timeline {
     this.#draw(meta);
   }
 
+  /** A step a notch, as in the terminal. */
+  #wheeled(event: WheelEvent): void {
+    if (event.ctrlKey || event.deltaY === 0 || this.#scrub.disabled) return;
+    event.preventDefault();
+    const step = Number(this.#scrub.value) + Math.sign(event.deltaY);
+    if (step >= 1 && step <= Number(this.#scrub.max)) this.#client.choose(names.STEP, step);
+  }
+
   #widen(): void {
     this.#scrub.style.setProperty("--column", `${this.#scrub.clientWidth / Math.max(1, Number(this.#scrub.max))}px`);
   }
@@ -76,7 +92,13 @@ export class Timeline {
     this.#widen();
     this.#drawing.setAttribute("viewBox", `-0.5 0 ${steps} ${HEIGHT}`);
     const column = (cssClass: string, first: number, last: number, y: number, height: number) =>
-      svg("rect", { class: cssClass, x: `${first - 0.5}`, width: `${last - first + 1}`, y: `${y}`, height: `${height}` });
+      svg("rect", {
+        class: cssClass,
+        x: `${first - 0.5}`,
+        width: `${last - first + 1}`,
+        y: `${y}`,
+        height: `${height}`,
+      });
     this.#drawing.replaceChildren(
       ...force.map((newtons, i) => {
         const height = ((newtons ?? 0) / most) * (HEIGHT - FORCE_FROM);

@@ -3,10 +3,23 @@
 /** How large the page is, and which of the parts that belong in one view are not in it. */
 export function layoutOf() {
   const wide = innerWidth >= 1280;
-  const parts = wide ? [".frames", ".experts", ".scene", "#chart-shares", "#chart-position", "#chart-psnr", ".timeline", ".latent-shares"] : [".timeline"];
+  const parts = wide
+    ? [
+        ".frames",
+        ".experts",
+        ".scene",
+        "#chart-shares",
+        "#chart-position",
+        "#chart-psnr",
+        ".timeline",
+        ".latent-shares",
+      ]
+    : [".timeline"];
   const hidden = parts.filter((selector) => {
     const box = document.querySelector(selector)?.getBoundingClientRect();
-    return box === undefined || box.height < 20 || box.bottom > innerHeight + 1 || box.right > innerWidth + 1 || box.top < 0;
+    return (
+      box === undefined || box.height < 20 || box.bottom > innerHeight + 1 || box.right > innerWidth + 1 || box.top < 0
+    );
   });
   return { width: document.documentElement.scrollWidth, height: document.documentElement.scrollHeight, hidden };
 }
@@ -32,16 +45,24 @@ export function contrastFaults() {
   const over = (top, under) => top.slice(0, 3).map((c, i) => c * (top[3] ?? 1) + under[i] * (1 - (top[3] ?? 1)));
   const behind = (element) => {
     const layers = [];
-    for (let each = element; each !== null; each = each.parentElement) layers.unshift(channels(getComputedStyle(each).backgroundColor));
+    for (let each = element; each !== null; each = each.parentElement)
+      layers.unshift(channels(getComputedStyle(each).backgroundColor));
     return layers.reduce((under, top) => over(top, under), [255, 255, 255]);
   };
   const faults = new Set();
   const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (walker.nextNode()) {
     const element = walker.currentNode.parentElement;
-    if (!walker.currentNode.textContent.trim() || !element.checkVisibility({ visibilityProperty: true }) || element.matches("option, :disabled")) continue;
+    if (
+      !walker.currentNode.textContent.trim() ||
+      !element.checkVisibility({ visibilityProperty: true }) ||
+      element.matches("option, :disabled")
+    )
+      continue;
     const ground = behind(element);
-    const [low, high] = [luminance(over(channels(getComputedStyle(element).color), ground)), luminance(ground)].sort((a, b) => a - b);
+    const [low, high] = [luminance(over(channels(getComputedStyle(element).color), ground)), luminance(ground)].sort(
+      (a, b) => a - b,
+    );
     const contrast = (high + 0.05) / (low + 0.05);
     if (contrast < 4.5) faults.add(`"${walker.currentNode.textContent.trim().slice(0, 30)}" ${contrast.toFixed(2)}`);
   }

@@ -88,13 +88,21 @@ async function switches(page) {
   const share = () => page.locator('[data-expert="vision"] .part').first().textContent();
   check((await share()) !== "0 %", "vision has a share");
   await page.locator("#poescope-switch-vision").click();
-  await page.waitForFunction(() => document.querySelector('[data-expert="vision"]')?.classList.contains("off"), undefined, WAIT);
+  await page.waitForFunction(
+    () => document.querySelector('[data-expert="vision"]')?.classList.contains("off"),
+    undefined,
+    WAIT,
+  );
   check((await share()) === "0 %", "without vision its share is none");
   check(await changed(page, before, ["belief", "stage"]), "without vision belief and plate change");
   const untouched = await looks(page);
   check(untouched.truth === before.truth, "the truth stays as it is");
   await press(page, "1");
-  await page.waitForFunction(() => !document.querySelector('[data-expert="vision"]')?.classList.contains("off"), undefined, WAIT);
+  await page.waitForFunction(
+    () => !document.querySelector('[data-expert="vision"]')?.classList.contains("off"),
+    undefined,
+    WAIT,
+  );
   check(await same(page, before, ["belief"]), "on again, the belief is what it was");
 }
 
@@ -143,7 +151,11 @@ async function scene(page) {
 
 async function restores(page, context) {
   await page.locator("#poescope-switch-haptic").click();
-  await page.waitForFunction(() => document.querySelector('[data-expert="haptic"]')?.classList.contains("off"), undefined, WAIT);
+  await page.waitForFunction(
+    () => document.querySelector('[data-expert="haptic"]')?.classList.contains("off"),
+    undefined,
+    WAIT,
+  );
   await page.waitForFunction(() => /alpha=haptic/.test(location.search), undefined, WAIT);
   const wanted = await page.locator(".where").textContent();
   const address = page.url();
@@ -152,15 +164,27 @@ async function restores(page, context) {
   await see(page, /step 1 of/);
   await page.goto(address);
   await page.waitForFunction((text) => document.querySelector(".where")?.textContent === text, wanted, WAIT);
-  await page.waitForFunction(() => document.querySelector('[data-expert="haptic"]')?.classList.contains("off"), undefined, WAIT);
+  await page.waitForFunction(
+    () => document.querySelector('[data-expert="haptic"]')?.classList.contains("off"),
+    undefined,
+    WAIT,
+  );
   check(true, "a state URL brings step and switches back");
   // Another viewer sees what this one does.
   const other = await context.newPage();
   await other.goto(url);
   await other.locator('.connection[data-open="true"]').waitFor(WAIT);
-  await other.waitForFunction(() => document.querySelector('[data-expert="haptic"]')?.classList.contains("off"), undefined, WAIT);
+  await other.waitForFunction(
+    () => document.querySelector('[data-expert="haptic"]')?.classList.contains("off"),
+    undefined,
+    WAIT,
+  );
   await press(page, "0");
-  await other.waitForFunction(() => !document.querySelector('[data-expert="haptic"]')?.classList.contains("off"), undefined, WAIT);
+  await other.waitForFunction(
+    () => !document.querySelector('[data-expert="haptic"]')?.classList.contains("off"),
+    undefined,
+    WAIT,
+  );
   check(true, "two viewers see one session");
   await other.close();
 }
@@ -210,7 +234,8 @@ async function appearance() {
       const faint = await page.evaluate(contrastFaults);
       check(faint.length === 0, `${scheme}: too little contrast: ${faint.join(", ")}`);
       await page.screenshot({ path: `${options.out}/${width}x${height}-${scheme}.png` });
-      if (width === 400) await page.screenshot({ path: `${options.out}/${width}x${height}-${scheme}-full.png`, fullPage: true });
+      if (width === 400)
+        await page.screenshot({ path: `${options.out}/${width}x${height}-${scheme}-full.png`, fullPage: true });
       if (width === 1280) {
         await press(page, "?");
         await page.locator("dialog.help[open]").waitFor(WAIT);
@@ -248,7 +273,8 @@ async function open(address, settings = { viewport: { width: 1280, height: 720 }
   });
   page.on("pageerror", (error) => faults.push(`page: ${error.stack}`));
   page.on("request", (request) => {
-    if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url())) faults.push(`asks elsewhere: ${request.url()}`);
+    if (!request.url().startsWith(url) && !/^(blob|data):/.test(request.url()))
+      faults.push(`asks elsewhere: ${request.url()}`);
   });
   await page.goto(address);
   await page.locator('.connection[data-open="true"]').waitFor(WAIT);
@@ -306,7 +332,13 @@ async function serve() {
   const child = spawn(command, args, { stdio: ["ignore", "ignore", "inherit"] });
   const failed = new Promise((_, reject) => child.once("error", reject));
   for (let i = 0; i < 100; i += 1) {
-    const answers = await Promise.race([fetch(url).then((answer) => answer.ok, () => false), failed]);
+    const answers = await Promise.race([
+      fetch(url).then(
+        (answer) => answer.ok,
+        () => false,
+      ),
+      failed,
+    ]);
     if (answers) return child;
     await new Promise((later) => setTimeout(later, 100));
   }

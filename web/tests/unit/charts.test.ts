@@ -64,7 +64,10 @@ describe("what a server may say of a chart", () => {
   });
 
   it("knows an expert by name or letter", () => {
-    const experts = [{ name: "vision", letter: "V" }, { name: "prior", letter: "D" }] as ExpertMeta[];
+    const experts = [
+      { name: "vision", letter: "V" },
+      { name: "prior", letter: "D" },
+    ] as ExpertMeta[];
     const series = (label: string) => ({ label }) as Parameters<typeof expertOf>[0];
     expect(["V vision", "prior", "D", "belief", ""].map((label) => expertOf(series(label), experts)?.letter)).toEqual([
       "V",

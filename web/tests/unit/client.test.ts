@@ -7,7 +7,13 @@ import type { GuiUpdate, Outgoing } from "../../src/protocol/outgoing";
 let sent: Outgoing[];
 let client: Client;
 const said = () => sent.map((message) => [(message as GuiUpdate).uuid, (message as GuiUpdate).updates.value]);
-const text = (uuid: string, value: string) => ({ type: "GuiTextMessage", uuid, container_uuid: "root", value, props: {} });
+const text = (uuid: string, value: string) => ({
+  type: "GuiTextMessage",
+  uuid,
+  container_uuid: "root",
+  value,
+  props: {},
+});
 
 beforeEach(() => {
   vi.useFakeTimers();
@@ -22,7 +28,10 @@ describe("what is said to the server", () => {
     for (let step = 1; step <= 5; step += 1) client.choose("step", step);
     expect(said()).toEqual([["step", 1]]);
     vi.advanceTimersByTime(20);
-    expect(said()).toEqual([["step", 1], ["step", 5]]);
+    expect(said()).toEqual([
+      ["step", 1],
+      ["step", 5],
+    ]);
   });
 
   it("loses no control when two change at once", () => {
@@ -31,7 +40,11 @@ describe("what is said to the server", () => {
     client.choose("a", 2);
     client.choose("b", 3);
     vi.advanceTimersByTime(20);
-    expect(said()).toEqual([["a", 1], ["a", 2], ["b", 3]]);
+    expect(said()).toEqual([
+      ["a", 1],
+      ["a", 2],
+      ["b", 3],
+    ]);
   });
 
   it("keeps keys in order, behind what was dragged before them, each with its number", () => {

@@ -16,7 +16,8 @@ describe.each([":root", ':root[data-theme="dark"]'])("the theme %s", (selector) 
   const rgb = (name: string) => rgbOf(token[name] ?? "") as Rgb;
 
   it.each(["--ink", "--dim", "--warn"])("has %s that can be read on every ground", (text) => {
-    for (const ground of ["--panel", "--ground", "--grid"]) expect(contrast(rgb(text), rgb(ground)), ground).toBeGreaterThan(4.5);
+    for (const ground of ["--panel", "--ground", "--grid"])
+      expect(contrast(rgb(text), rgb(ground)), ground).toBeGreaterThan(4.5);
   });
 });
 
@@ -46,6 +47,11 @@ it("writes every formula in pieces that join to what is there", () => {
     { text: "x", place: "base" },
   ]);
   for (const term of Object.values(TERMS)) {
-    if ("formula" in term) expect(pieces(term.formula).map(({ text }) => text).join("")).not.toMatch(/[_^{}]/);
+    if ("formula" in term)
+      expect(
+        pieces(term.formula)
+          .map(({ text }) => text)
+          .join(""),
+      ).not.toMatch(/[_^{}]/);
   }
 });

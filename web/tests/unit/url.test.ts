@@ -31,7 +31,9 @@ describe("the state in the page's address", () => {
   });
 
   it("stays readable", () => {
-    expect(urlOfState(page("http://h/"), "v=1;alpha=vision:0@1-15,haptic:0.5@4")).toBe("/?state=v=1;alpha=vision:0@1-15,haptic:0.5@4");
+    expect(urlOfState(page("http://h/"), "v=1;alpha=vision:0@1-15,haptic:0.5@4")).toBe(
+      "/?state=v=1;alpha=vision:0@1-15,haptic:0.5@4",
+    );
     expect(urlOfState(page("http://h/"), "")).toBe("/");
   });
 
