@@ -1,7 +1,7 @@
 /** The session as this page has it: what the server said, and how to say something back. */
 import * as names from "./names";
 import { namesOf } from "./keys";
-import { type FaceAnswer, type KeyLine, type Meta, parsed } from "./meta";
+import { type FaceAnswer, NO_ANSWER, type KeyLine, type Meta, parsed } from "./meta";
 import { type Outgoing, guiUpdate } from "./protocol/outgoing";
 import type { GuiElement } from "./state/gui";
 import { Store } from "./state/store";
@@ -43,7 +43,7 @@ export class Client {
   }
 
   get answer(): FaceAnswer | undefined {
-    return this.#json<FaceAnswer>(names.FACE);
+    return this.#json<FaceAnswer>(names.FACE, (found) => ({ ...NO_ANSWER, ...found }));
   }
 
   get state(): string {
@@ -124,11 +124,12 @@ export class Client {
   }
 
   /** Parsed once for each text. */
-  #json<T>(uuid: string): T | undefined {
+  #json<T>(uuid: string, whole: (found: T) => T = (found) => found): T | undefined {
     const text = this.element(uuid)?.value;
     let known = this.#parsed.get(uuid);
     if (known === undefined || known.text !== text) {
-      known = { text, value: parsed<T>(text) };
+      const found = parsed<T>(text);
+      known = { text, value: found === undefined ? undefined : whole(found) };
       this.#parsed.set(uuid, known);
     }
     return known.value as T | undefined;

@@ -61,16 +61,25 @@ export function token(name: string): string {
   return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 }
 
-/**
- * A colour of the server in this theme. Near-black and near-white stand for the foreground, whose ink it then is; all
- * others are the modalities' own and stay.
- */
+/** The grey that the server gives to what is to be seen on light and on dark: the belief. */
+const EITHER = "#7a7a7a";
+
+/** A colour of the server's charts in this theme: what stands for the foreground is ink, all others stay. */
 export function themed(css: string): string {
   const rgb = rgbOf(css);
   if (rgb === undefined) return css;
   const [low, high] = [Math.min(...rgb), Math.max(...rgb)];
-  const grey = high - low < 24;
-  return grey && (high < 64 || low > 216) ? token("--ink") : css;
+  const foreground = high - low < 24 && (high < 64 || low > 216);
+  return foreground || css.toLowerCase() === EITHER ? token("--ink") : css;
+}
+
+/** A colour of the server's scene in this theme: in the dark, greys are turned over, so that the table does not glare. */
+export function lit(rgb: Rgb): Rgb {
+  const [low, high] = [Math.min(...rgb), Math.max(...rgb)];
+  if (theme() === "light" || high - low >= 24) return rgb;
+  // Twice the middle on the other side of half: lightness turned over, the tint as it was.
+  const shift = 255 - (low + high);
+  return rgb.map((channel) => Math.round(channel + shift)) as Rgb;
 }
 
 /** A colour for letters: moved towards the ink until it can be read on a panel. */

@@ -112,7 +112,7 @@ export class Chart {
     const y = chart.ranges["y"];
     return {
       ...this.#size(),
-      padding: [4, 6, 0, 0],
+      padding: [7, 6, 0, 0],
       legend: { show: false },
       cursor: {
         y: false,
@@ -125,7 +125,7 @@ export class Chart {
           time: false,
           range: (_, low, high) => margins(low, high, drawing === "dimensions" ? 1 : 0.02 * (high - low)),
         },
-        y: y === undefined ? {} : { range: (_, low, high) => [y[0] ?? low, y[1] ?? high] },
+        y: y === undefined ? {} : { range: (_, low, high) => [y[0] ?? low, y[1] ?? high + 0.06 * (high - (y[0] ?? low))] },
       },
       series: chart.series.map((series, i) => (i === 0 ? {} : seriesOptions(series, drawing))),
       bands:
@@ -196,6 +196,7 @@ function seriesOptions(series: Series, drawing: Drawing): uPlot.Series {
     label: series.label,
     show: series.show,
     ...(series.stroke === undefined || !drawn ? {} : { stroke: themed(series.stroke), width: series.width }),
+    ...(series.fill === undefined || !drawn ? {} : { fill: series.fill }),
     ...(series.dash === undefined ? {} : { dash: series.dash }),
     points: { show: drawn && series.points && series.stroke !== undefined, size: 4 },
   };

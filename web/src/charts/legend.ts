@@ -17,31 +17,32 @@ export function legendItems(
   at: number | undefined,
 ): HTMLElement[] {
   return chart.series.flatMap((series, i) => {
-    if (i === 0 || !named(series, drawing)) return [];
+    const band = chart.bands.find(({ series: [upper] }) => upper === i)?.fill;
+    if (i === 0 || !named(series, drawing, band)) return [];
     const expert = expertOf(series, experts);
     const value = at === undefined ? undefined : valueAt(chart, drawing, i, at);
     const number = value === undefined ? [] : [" ", h("b", { class: "number" }, value)];
-    return [h("span", {}, swatch(series, drawing, expert), series.label, ...number)];
+    return [h("span", {}, swatch(series, drawing, expert, band), series.label, ...number)];
   });
 }
 
-/** Edges of bands without a line of their own, and what is hidden, have no entry. */
-function named(series: Series, drawing: Drawing): boolean {
+/** What is hidden, and the lower edge of a band, has no entry; the upper edge names the band. */
+function named(series: Series, drawing: Drawing, band: string | undefined): boolean {
   return (
     series.show &&
     series.label !== "" &&
-    (drawing === "stack" || series.stroke !== undefined || series.fill !== undefined)
+    (drawing === "stack" || series.stroke !== undefined || series.fill !== undefined || (drawing === "lines" && band !== undefined))
   );
 }
 
-function swatch(series: Series, drawing: Drawing, expert: ExpertMeta | undefined): HTMLElement {
+function swatch(series: Series, drawing: Drawing, expert: ExpertMeta | undefined, band: string | undefined): HTMLElement {
   if (drawing === "dimensions" && expert !== undefined) {
     const letter = h("i", { class: "letter", "aria-hidden": "true" });
     letter.style.setProperty("--c", expert.color);
     return letter;
   }
   const element = h("i", { class: "swatch", "aria-hidden": "true" });
-  const own = series.stroke === undefined ? (series.fill ?? token("--dim")) : themed(series.stroke);
+  const own = series.stroke === undefined ? (series.fill ?? band ?? token("--dim")) : themed(series.stroke);
   element.style.setProperty("--c", expert?.color ?? own);
   if (drawing === "stack") element.dataset["fill"] = fillOf(expert?.fill ?? "█");
   else element.dataset["line"] = series.stroke === undefined ? "band" : series.dash === undefined ? "solid" : "dashed";

@@ -1,6 +1,7 @@
 /** One mesh at many places: the steps of a path. */
-import { type BufferGeometry, Color, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
+import { type BufferGeometry, InstancedMesh, Matrix4, MeshLambertMaterial, Quaternion, Vector3 } from "three";
 import type { SceneNode } from "../state/scene";
+import { ink } from "./ink";
 
 export function batched(props: SceneNode["props"], geometry: BufferGeometry): InstancedMesh {
   const positions = numbersOf(props["batched_positions"]);
@@ -15,7 +16,7 @@ export function batched(props: SceneNode["props"], geometry: BufferGeometry): In
     matrix.compose(at(positions, i), new Quaternion(x, y, z, w), sizeOf(sizes, i, count));
     mesh.setMatrixAt(i, matrix);
     const own = colors.length >= count * 3 ? i * 3 : 0;
-    mesh.setColorAt(i, new Color(`rgb(${colors[own] ?? 90}, ${colors[own + 1] ?? 200}, ${colors[own + 2] ?? 255})`));
+    mesh.setColorAt(i, ink(colors.slice(own, own + 3)));
   }
   return mesh;
 }

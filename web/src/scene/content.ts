@@ -21,8 +21,8 @@ import { LineMaterial } from "three/addons/lines/LineMaterial.js";
 import { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 import { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
 import type { SceneNode } from "../state/scene";
-import { themed } from "../theme";
 import { batched } from "./batched";
+import { colorOf, ink } from "./ink";
 
 type Props = SceneNode["props"];
 type Maker = (props: Props) => Object3D;
@@ -101,7 +101,7 @@ function lines(props: Props): Object3D {
   if (perPoint) geometry.setColors(linear(given));
   const world = props["thickness_units"] !== "screen";
   const material = new LineMaterial({
-    color: perPoint ? 0xffffff : ink([...given.subarray(0, 3)]),
+    color: perPoint ? 0xffffff : ink(given.subarray(0, 3)),
     vertexColors: perPoint,
     worldUnits: world,
     linewidth: number(props["thickness"], 0.01),
@@ -126,7 +126,7 @@ function arrows(props: Props): Object3D {
     const own =
       given.length >= (i + 1) * 3 && given.length > 3 ? given.subarray(i * 3, i * 3 + 3) : given.subarray(0, 3);
     const tip = Math.min(length, whole * 0.6);
-    const material = new MeshLambertMaterial({ color: ink([...own]) });
+    const material = new MeshLambertMaterial({ color: ink(own) });
     const stem = new CylinderGeometry(shaft, shaft, whole - tip, 12).translate(0, (whole - tip) / 2, 0);
     const cone = new ConeGeometry(head, tip, 16).translate(0, whole - tip / 2, 0);
     const arrow = new Group().add(new Mesh(stem, material), new Mesh(cone, material));
@@ -160,21 +160,11 @@ function grid(props: Props): Object3D {
   );
 }
 
-export function colorOf(value: unknown): Color {
-  const [r = 0, g = 0, b = 0] = numbers(value);
-  return new Color(`rgb(${r}, ${g}, ${b})`);
-}
-
-/** A colour of a line or an arrow, which black and white in both themes need turned. */
-function ink([r = 0, g = 0, b = 0]: number[]): Color {
-  return new Color(themed(`rgb(${r}, ${g}, ${b})`));
-}
-
 /** Colours of vertices in three's own working space. */
 function linear(given: Uint8Array): Float32Array {
   const out = new Float32Array(given.length);
   for (let i = 0; i + 2 < given.length; i += 3) {
-    const color = ink([...given.subarray(i, i + 3)]);
+    const color = ink(given.subarray(i, i + 3));
     out.set([color.r, color.g, color.b], i);
   }
   return out;

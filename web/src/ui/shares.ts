@@ -1,4 +1,4 @@
-/** The share of each expert in each latent dimension: a stacked bar a dimension, the prior at the bottom. */
+/** The share of each expert in each latent dimension: a stacked bar a dimension, the first expert lowest. */
 import { type Fill, fillOf } from "../fills";
 import { percent } from "../format";
 import type { Meta } from "../meta";
@@ -31,7 +31,6 @@ export class LatentShares {
     }
     this.#columns.forEach((column, d) => {
       column.classList.toggle("inactive", meta?.active[d] === false);
-      // The list's last expert, the prior, is lowest: what the sensors add stands on it.
       experts.forEach((expert, i) => {
         const piece = column.children[i] as HTMLElement;
         piece.style.height = `${(expert.share[d] ?? 0) * 100}%`;
