@@ -1,7 +1,7 @@
 /** The session as this page has it: what the server said, and how to say something back. */
 import * as names from "./names";
 import { namesOf } from "./keys";
-import { type FaceAnswer, NO_ANSWER, type KeyLine, type Meta, parsed } from "./meta";
+import { type FaceAnswer, type KeyLine, type Meta, NO_ANSWER, parsed } from "./meta";
 import { type Outgoing, guiUpdate } from "./protocol/outgoing";
 import type { GuiElement } from "./state/gui";
 import { Store } from "./state/store";

@@ -105,7 +105,15 @@ export interface FaceAnswer {
 }
 
 /** Before the first key: the server says no more than its number. */
-export const NO_ANSWER: FaceAnswer = { n: 0, hint: null, mode: false, palette: null, expert: 0, face: null, explain: null };
+export const NO_ANSWER: FaceAnswer = {
+  n: 0,
+  hint: null,
+  mode: false,
+  palette: null,
+  expert: 0,
+  face: null,
+  explain: null,
+};
 
 /** Reads one of the JSON texts above; nothing where it is none, and the page shows less. */
 export function parsed<T>(text: unknown): T | undefined {

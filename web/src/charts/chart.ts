@@ -125,7 +125,10 @@ export class Chart {
           time: false,
           range: (_, low, high) => margins(low, high, drawing === "dimensions" ? 1 : 0.02 * (high - low)),
         },
-        y: y === undefined ? {} : { range: (_, low, high) => [y[0] ?? low, y[1] ?? high + 0.06 * (high - (y[0] ?? low))] },
+        y:
+          y === undefined
+            ? {}
+            : { range: (_, low, high) => [y[0] ?? low, y[1] ?? high + 0.06 * (high - (y[0] ?? low))] },
       },
       series: chart.series.map((series, i) => (i === 0 ? {} : seriesOptions(series, drawing))),
       bands:

@@ -31,11 +31,19 @@ function named(series: Series, drawing: Drawing, band: string | undefined): bool
   return (
     series.show &&
     series.label !== "" &&
-    (drawing === "stack" || series.stroke !== undefined || series.fill !== undefined || (drawing === "lines" && band !== undefined))
+    (drawing === "stack" ||
+      series.stroke !== undefined ||
+      series.fill !== undefined ||
+      (drawing === "lines" && band !== undefined))
   );
 }
 
-function swatch(series: Series, drawing: Drawing, expert: ExpertMeta | undefined, band: string | undefined): HTMLElement {
+function swatch(
+  series: Series,
+  drawing: Drawing,
+  expert: ExpertMeta | undefined,
+  band: string | undefined,
+): HTMLElement {
   if (drawing === "dimensions" && expert !== undefined) {
     const letter = h("i", { class: "letter", "aria-hidden": "true" });
     letter.style.setProperty("--c", expert.color);

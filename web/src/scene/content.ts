@@ -3,7 +3,6 @@ import {
   BoxGeometry,
   BufferAttribute,
   BufferGeometry,
-  Color,
   ConeGeometry,
   CylinderGeometry,
   DoubleSide,
