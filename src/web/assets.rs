@@ -12,9 +12,6 @@ const LARGEST: u64 = 64 << 20;
 /// Folders below it that are looked into.
 const DEEPEST: usize = 4;
 
-/// The page where there is no client.
-const MISSING: &str = include_str!("assets/missing.html");
-
 /// One file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Asset {
@@ -29,27 +26,16 @@ pub struct Asset {
 pub struct Assets(BTreeMap<String, Asset>);
 
 impl Assets {
-    /// Those that were built in; else a page that says what is missing.
+    /// Those that were built in: the client's, else a page that says what is missing.
     pub fn built_in() -> Self {
-        Self::of(BUILT_IN)
-    }
-
-    fn of(files: &[(&str, &str, &'static [u8])]) -> Self {
-        let mut assets: BTreeMap<String, Asset> = files
-            .iter()
-            .map(|&(path, mime, bytes)| {
-                let asset = Asset {
-                    mime: mime.to_owned(),
-                    bytes: Bytes::from_static(bytes),
-                };
-                (path.to_owned(), asset)
-            })
-            .collect();
-        assets.entry("/".to_owned()).or_insert_with(|| Asset {
-            mime: mime("index.html").to_owned(),
-            bytes: Bytes::from_static(MISSING.as_bytes()),
+        let files = BUILT_IN.iter().map(|&(path, mime, bytes)| {
+            let asset = Asset {
+                mime: mime.to_owned(),
+                bytes: Bytes::from_static(bytes),
+            };
+            (path.to_owned(), asset)
         });
-        Self(assets)
+        Self(files.collect())
     }
 
     /// Those of a folder, read once, now.
@@ -125,8 +111,8 @@ fn mime(name: &str) -> &'static str {
     }
 }
 
-/// Path, media type and bytes of each.
-const BUILT_IN: &[(&str, &str, &[u8])] = &[];
+/// Path, media type and bytes of each, as `build.rs` made them.
+const BUILT_IN: &[(&str, &str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/web_assets.rs"));
 
 #[cfg(test)]
 mod tests {
@@ -135,10 +121,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn without_a_client_there_is_a_page_that_says_so() {
-        let page = Assets::of(&[]).get("/").cloned().unwrap();
+    fn there_is_always_a_page() {
+        let page = Assets::built_in().get("/").cloned().unwrap();
         assert!(page.mime.starts_with("text/html"));
-        assert!(String::from_utf8_lossy(&page.bytes).contains("npm"));
+        assert!(String::from_utf8_lossy(&page.bytes).contains("poescope"));
     }
 
     #[test]

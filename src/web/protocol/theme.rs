@@ -31,7 +31,7 @@ impl Default for Theme {
         Self {
             titlebar_content: None,
             control_layout: "floating",
-            control_width: "large",
+            control_width: "medium",
             show_logo: true,
             show_share_button: false,
             dark_mode: false,
@@ -52,6 +52,7 @@ mod tests {
             "#1e785a", "#165742",
         ];
         let theme = Theme {
+            control_width: "large",
             colors: Some(colors.map(str::to_owned)),
             ..Theme::default()
         };

@@ -78,7 +78,7 @@ fn shares(snapshot: &Snapshot) -> String {
     for view in &snapshot.experts {
         let (r, g, b) = view.expert.rgb();
         let percent = if view.share_mean.is_finite() {
-            100.0 * view.share_mean
+            100.0 * view.share_mean.abs()
         } else {
             0.0
         };

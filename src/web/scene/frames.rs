@@ -29,7 +29,7 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot, pictures: &mut Pictures) {
         ErrorOf::Belief => "belief",
         ErrorOf::Prediction => "prediction",
     };
-    let label = format!("error of {of} (±{ERROR_RANGE}: blue too dark, orange too bright)");
+    let label = format!("error of {of}: blue −{ERROR_RANGE}, orange +{ERROR_RANGE}");
     panel.image(
         "frame-error",
         &label,

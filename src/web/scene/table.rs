@@ -30,7 +30,7 @@ pub fn add(nodes: &mut Nodes, snapshot: &Snapshot) {
     let (middle, side) = extent(snapshot.position.as_ref());
     let [x, y] = middle;
     nodes.add(&CameraPosition {
-        position: [x, y - 0.9 * side, 0.9 * side],
+        position: [x, y - 0.6 * side, 0.6 * side],
         initial: true,
     });
     nodes.add(&CameraLookAt {

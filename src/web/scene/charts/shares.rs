@@ -33,7 +33,7 @@ pub fn chart(snapshot: &Snapshot) -> UplotProps {
     chart.mark(snapshot.cursor, 1.0);
     chart.done(
         "share of precision",
-        "share, one on top of the other",
+        "share, stacked",
         Some([Some(0.0), Some(1.05)]),
     )
 }
