@@ -244,9 +244,9 @@ mod tests {
         let Asked::Commands(commands) = asked else {
             panic!("{name}: {asked:?}");
         };
-        commands
-            .into_iter()
-            .for_each(|command| session.apply(command));
+        for command in commands {
+            session.apply(command);
+        }
         assert!(session.wait_idle(Duration::from_secs(20)));
     }
 

@@ -177,11 +177,11 @@ mod tests {
         assert!(matches!(read(b"hello"), Err(Malformed::Unreadable(_))));
         // An array that says that it has four thousand million entries, and nesting without end.
         assert!(read(&[0xdd, 0xff, 0xff, 0xff, 0xff]).is_err());
-        assert!(read(&[0x91; 60_000]).is_err());
+        assert!(read(&vec![0x91; 60_000]).is_err());
         let mut deep = rmp_serde::to_vec_named(&json!({"type": "GuiUpdateMessage"})).unwrap();
         deep[0] = 0x82;
         deep.extend(b"\xa1x");
-        deep.extend([0x91; 60_000]);
+        deep.extend(vec![0x91; 60_000]);
         assert!(read(&deep).is_err());
         let mut two = update(&json!(1));
         two.extend(update(&json!(1)));

@@ -35,6 +35,7 @@ impl Base {
 
 /// Props of every solid.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[expect(clippy::struct_excessive_bools, reason = "so are they on the wire")]
 pub struct Look {
     /// Edges only.
     pub wireframe: bool,

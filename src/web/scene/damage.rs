@@ -3,7 +3,7 @@
 use super::names::{AS_RECORDED, DAMAGE, SEVERITY, damage};
 use super::panel::{Panel, Range};
 use crate::measure::corruption::{Damage, applies};
-use crate::modality::Modality;
+use crate::modality::{Expert, Modality};
 use crate::session::snapshot::Snapshot;
 
 /// Adds the folder.
@@ -48,10 +48,7 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
 /// What the present model's experts look at.
 fn looked_at(snapshot: &Snapshot) -> impl Iterator<Item = Modality> {
     let experts = snapshot.experts.iter().map(|view| view.expert);
-    let seen: Vec<Modality> = experts
-        .flat_map(|expert| expert.modalities())
-        .copied()
-        .collect();
+    let seen: Vec<Modality> = experts.flat_map(Expert::modalities).copied().collect();
     Modality::ALL
         .into_iter()
         .filter(move |modality| seen.contains(modality))

@@ -1,5 +1,7 @@
 //! What is open, and where in it the cursor is.
 
+use std::fmt::Write;
+
 use super::escape::escaped;
 use super::names::{SPEEDS, entry, episodes};
 use super::panel::{Panel, Range};
@@ -73,19 +75,18 @@ fn status(snapshot: &Snapshot) -> String {
         snapshot.cursor + 1,
         episode.secs.len()
     );
+    // Writing to a string cannot fail.
     if let Some(secs) = episode.secs.get(snapshot.cursor) {
-        line.push_str(&format!(", {secs:.2} s"));
+        let _ = write!(line, ", {secs:.2} s");
     }
-    match &snapshot.badge {
-        Badge::Trained => line.push_str(". Trained on these switches."),
-        Badge::Untrained(why) => {
-            line.push_str(&format!(". **Not trained on this**: {}.", escaped(why)))
-        }
-        Badge::NoProduct => line.push_str(". No product: nothing to switch."),
-    }
+    let _ = match &snapshot.badge {
+        Badge::Trained => write!(line, ". Trained on these switches."),
+        Badge::Untrained(why) => write!(line, ". **Not trained on this**: {}.", escaped(why)),
+        Badge::NoProduct => write!(line, ". No product: nothing to switch."),
+    };
     if !episode.missing.is_empty() {
-        let missing = episode.missing.join(", ");
-        line.push_str(&format!(" The recording lacks {}.", escaped(&missing)));
+        let missing = escaped(&episode.missing.join(", "));
+        let _ = write!(line, " The recording lacks {missing}.");
     }
     if !snapshot.current {
         line.push_str(" _computing_");

@@ -5,6 +5,8 @@ use serde_json::{Value, json};
 use super::experts::switchable;
 use super::head::steps;
 use super::panel::Panel;
+use crate::episode::Split;
+use crate::measure::divergence::KlParts;
 use crate::session::keymap::{Binding, FaceCommand, Meaning, bindings};
 use crate::session::snapshot::{Badge, ExpertView, Snapshot};
 
@@ -69,7 +71,7 @@ fn meta(snapshot: &Snapshot, read_only: bool) -> Value {
             "index": snapshot.episode_index,
             "count": snapshot.episode_count,
             "id": episode.id,
-            "split": episode.split.map(|split| split.name()),
+            "split": episode.split.map(Split::name),
             "flags": episode.flags,
             "missing": episode.missing,
         })),
@@ -89,7 +91,7 @@ fn meta(snapshot: &Snapshot, read_only: bool) -> Value {
         "force_over_time": episode.map(|episode| &episode.force_newtons),
         "experts": experts(snapshot),
         "active": fusion.map(|fusion| fusion.active.as_slice()).unwrap_or_default(),
-        "surprise_nats": fusion.and_then(|fusion| fusion.surprise).map(|parts| parts.total()),
+        "surprise_nats": fusion.and_then(|fusion| fusion.surprise).map(KlParts::total),
         "badge": badge(&snapshot.badge),
         "error_of": snapshot.frames.error_of,
         "position_error_cm": {
@@ -158,7 +160,7 @@ fn experts(snapshot: &Snapshot) -> Vec<Value> {
             "share_mean": view.share_mean,
             "share_position": view.share_position,
             "information_nats": reading.and_then(|reading| reading.information_nats),
-            "fused_nats": reading.and_then(|reading| reading.fused).map(|parts| parts.total()),
+            "fused_nats": reading.and_then(|reading| reading.fused).map(KlParts::total),
             "nis": reading.and_then(|reading| reading.nis).map(|nis| nis.head),
             "pull_cm": reading.and_then(|reading| reading.pull_m).map(|pull| pull.map(|metres| 100.0 * metres)),
         })

@@ -131,7 +131,7 @@ impl Panel {
             min: range.min,
             max: range.max,
             step: range.step,
-            precision: if range.step < 1.0 { 1 } else { 0 },
+            precision: u8::from(range.step < 1.0),
             marks: Some(Vec::new()),
         };
         let (uuid, container_uuid) = (uuid(name), self.container.clone());

@@ -63,6 +63,11 @@ pub fn add(nodes: &mut Nodes, snapshot: &Snapshot) {
         Some(([0.0, 0.0, 0.006], 0.0)),
     );
 
+    things(nodes, snapshot, flat);
+}
+
+/// What stands on it.
+fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
     let position = snapshot.position.as_ref();
     let cursor = snapshot.cursor;
     let pose = position.and_then(|position| position.truth.get(cursor));

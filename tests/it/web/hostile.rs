@@ -16,7 +16,7 @@ fn deep() -> Vec<u8> {
     bytes.push(0xb0);
     bytes.extend(b"GuiUpdateMessage");
     bytes.extend(b"\xa1x");
-    bytes.extend([0x91; 60_000]);
+    bytes.extend(vec![0x91; 60_000]);
     bytes
 }
 
