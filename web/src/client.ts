@@ -35,7 +35,10 @@ export class Client {
   }
 
   get meta(): Meta | undefined {
-    return this.#json<Meta>(names.META);
+    return this.#json<Meta>(names.META, (found) => ({
+      ...found,
+      error_of: String(found.error_of).toLowerCase() === "prediction" ? "prediction" : "belief",
+    }));
   }
 
   get keys(): readonly KeyLine[] {

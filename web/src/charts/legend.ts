@@ -16,7 +16,12 @@ export function legendItems(
   experts: readonly ExpertMeta[],
   at: number | undefined,
 ): HTMLElement[] {
-  return chart.series.flatMap((series, i) => {
+  // Lines first: where there is no room for all, a band can do without its name.
+  const order = chart.series
+    .map((_, i) => i)
+    .sort((a, b) => Number(isBand(chart, a)) - Number(isBand(chart, b)) || a - b);
+  return order.flatMap((i) => {
+    const series = chart.series[i] as Series;
     const band = chart.bands.find(({ series: [upper] }) => upper === i)?.fill;
     if (i === 0 || !named(series, drawing, band)) return [];
     const expert = expertOf(series, experts);
@@ -24,6 +29,10 @@ export function legendItems(
     const number = value === undefined ? [] : [" ", h("b", { class: "number" }, value)];
     return [h("span", {}, swatch(series, drawing, expert, band), series.label, ...number)];
   });
+}
+
+function isBand(chart: Described, index: number): boolean {
+  return chart.series[index]?.stroke === undefined;
 }
 
 /** What is hidden, and the lower edge of a band, has no entry; the upper edge names the band. */
@@ -53,8 +62,13 @@ function swatch(
   const own = series.stroke === undefined ? (series.fill ?? band ?? token("--dim")) : themed(series.stroke);
   element.style.setProperty("--c", expert?.color ?? own);
   if (drawing === "stack") element.dataset["fill"] = fillOf(expert?.fill ?? "█");
-  else element.dataset["line"] = series.stroke === undefined ? "band" : series.dash === undefined ? "solid" : "dashed";
+  else element.dataset["line"] = series.stroke === undefined ? "band" : strokeName(series.dash);
   return element;
+}
+
+function strokeName(dash: number[] | undefined): string {
+  if (dash === undefined) return "solid";
+  return dash.length === 2 && (dash[0] ?? 0) <= 3 ? "dotted" : "dashed";
 }
 
 function valueAt(chart: Described, drawing: Drawing, series: number, at: number): string | undefined {

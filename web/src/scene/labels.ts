@@ -21,13 +21,13 @@ export class Labels {
     this.#labels.delete(name);
   }
 
-  /** Puts each where its object is on the screen. */
+  /** Puts each above where its object is on the screen. */
   place(camera: Camera, width: number, height: number): void {
     const point = new Vector3();
     for (const { element, object } of this.#labels.values()) {
       object.getWorldPosition(point).project(camera);
       element.hidden = !shownBelow(object) || point.z > 1;
-      element.style.transform = `translate(${((point.x + 1) / 2) * width}px, ${((1 - point.y) / 2) * height}px)`;
+      element.style.transform = `translate(${((point.x + 1) / 2) * width}px, ${((1 - point.y) / 2) * height}px) translate(-50%, -190%)`;
     }
   }
 }

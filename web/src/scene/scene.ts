@@ -1,6 +1,7 @@
 /** The table in three dimensions: the server's nodes, orbit controls, clicks on the path. Draws only when something changed. */
 import {
   AmbientLight,
+  Box3,
   DirectionalLight,
   Group,
   type Object3D,
@@ -12,14 +13,18 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Client } from "../client";
 import { fixed } from "../format";
+import { PATH_POINTS } from "../names";
 import type { SceneNode } from "../state/scene";
 import { token } from "../theme";
 import { h } from "../ui/dom";
 import { icon } from "../ui/icons";
 import { explained } from "../ui/term";
-import { contentOf, dispose } from "./content";
+import { contentOf, dispose, floats } from "./content";
 import { Labels } from "./labels";
 import { pick } from "./pick";
+
+/** Around the path: the plate is larger than its own middle. */
+const ROOM_M = 0.04;
 
 interface Shown {
   holder: Group;
@@ -37,10 +42,12 @@ export class SceneView {
   readonly #note = h("p", { class: "empty" });
   readonly #scene = new Scene();
   readonly #root = new Group();
-  readonly #camera = new PerspectiveCamera(45, 1, 0.01, 100);
+  readonly #camera = new PerspectiveCamera(40, 1, 0.01, 100);
   readonly #shown = new Map<string, Shown>();
   #renderer: WebGLRenderer | undefined;
   #controls: OrbitControls | undefined;
+  /** What was replaced. It goes after the next picture: its shader is that of what took its place, and costs much to make. */
+  #old: Object3D[] = [];
   #asked = false;
   #placed = "";
 
@@ -80,7 +87,8 @@ export class SceneView {
       if (node === undefined) this.#remove(name);
       else this.#show(node);
     }
-    const placed = JSON.stringify(camera);
+    // Another episode goes elsewhere on the table; within one the camera is the viewer's.
+    const placed = JSON.stringify([camera, this.#client.meta?.episode?.index]);
     if (placed !== this.#placed) {
       this.#placed = placed;
       this.#place();
@@ -118,6 +126,8 @@ export class SceneView {
       this.#note.textContent = "no WebGL here: the charts show the same position as numbers";
       return;
     }
+    // Asking whether a shader is right makes the page wait for it.
+    this.#renderer.debug.checkShaderErrors = false;
     const controls = new OrbitControls(this.#camera, this.#canvas);
     controls.addEventListener("change", () => this.invalidate());
     // A finger that goes up or down scrolls the page.
@@ -169,7 +179,7 @@ export class SceneView {
   #empty(shown: Shown): void {
     if (shown.content === undefined) return;
     shown.holder.remove(shown.content);
-    dispose(shown.content);
+    this.#old.push(shown.content);
     shown.content = undefined;
   }
 
@@ -182,15 +192,29 @@ export class SceneView {
     this.#shown.delete(name);
   }
 
-  /** The camera where the server wants a new viewer to begin. */
+  /** The camera on the server's side of the table, as near as shows the whole path. */
   #place(): void {
-    const { position, lookAt, fov } = this.#client.store.camera;
-    this.#camera.position.set(...(position ?? [0.55, -0.55, 0.5]));
-    if (fov !== undefined) this.#camera.fov = (fov * 180) / Math.PI;
-    this.#camera.updateProjectionMatrix();
-    this.#controls?.target.set(...(lookAt ?? [0.55, 0, 0]));
+    const { store } = this.#client;
+    const from = new Vector3(...(store.camera.position ?? [0, -1, 1]));
+    const to = new Vector3(...(store.camera.lookAt ?? [0, 0, 0]));
+    const path = floats(store.scene.get(PATH_POINTS)?.props["batched_positions"]);
+    const away = from.sub(to);
+    if (path.length > 3) {
+      const box = new Box3().setFromArray(path);
+      box.getCenter(to);
+      away.setLength((box.getSize(new Vector3()).length() / 2 + ROOM_M) / Math.tan(this.#narrowest() / 2));
+    }
+    this.#camera.position.copy(to).add(away);
+    this.#controls?.target.copy(to);
+    this.#camera.lookAt(to);
     this.#controls?.update();
     this.invalidate();
+  }
+
+  /** The smaller one of the camera's two angles, in radians. */
+  #narrowest(): number {
+    const upright = (this.#camera.fov * Math.PI) / 180;
+    return 2 * Math.atan(Math.tan(upright / 2) * Math.min(1, this.#camera.aspect));
   }
 
   #resize(): void {
@@ -207,6 +231,8 @@ export class SceneView {
     if (this.#renderer === undefined || document.hidden) return;
     this.#renderer.setClearColor(token("--panel"), 1);
     this.#renderer.render(this.#scene, this.#camera);
+    this.#old.forEach(dispose);
+    this.#old = [];
     this.#labels.place(this.#camera, this.#canvas.clientWidth, this.#canvas.clientHeight);
   }
 

@@ -47,7 +47,11 @@ export class Settings {
     const element = h("span", { class: "note" });
     this.#notes.push({ element, text: note });
     const name = h("span", term === undefined ? {} : { "data-term": term }, title);
-    const body = h("div", { class: "controls" }, ...controls.map((each) => each.element));
+    const body = h(
+      "div",
+      { class: uuids === names.FIND ? "controls pairs" : "controls" },
+      ...controls.map((each) => each.element),
+    );
     // A high window has the room for all of them.
     const open = innerHeight >= ROOMY_PX && innerWidth >= 1180;
     this.element.append(h("details", { class: "fold", open }, h("summary", {}, name, element), body));

@@ -93,7 +93,12 @@ async function switches(page) {
     undefined,
     WAIT,
   );
-  check((await share()) === "0 %", "without vision its share is none");
+  // The switch shows at once, the shares when they are computed.
+  await page.waitForFunction(
+    () => document.querySelector('[data-expert="vision"] .part')?.textContent === "0 %",
+    undefined,
+    WAIT,
+  );
   check(await changed(page, before, ["belief", "stage"]), "without vision belief and plate change");
   const untouched = await looks(page);
   check(untouched.truth === before.truth, "the truth stays as it is");
