@@ -3,6 +3,7 @@
 mod client;
 mod doors;
 mod hostile;
+mod program;
 
 use std::time::{Duration, Instant};
 
