@@ -1,5 +1,6 @@
 //! The command line: the doc comments here are the help.
 
+use std::net::{IpAddr, SocketAddr};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
@@ -29,6 +30,8 @@ pub struct Cli {
 pub enum Command {
     /// Open a model on a dataset in the terminal
     View(ViewArgs),
+    /// Open the same in a browser
+    Serve(ServeArgs),
     /// List a dataset: episodes, topics, types, rates, and what was left out
     Info(InfoArgs),
     /// Record planar pushes in simulation as a dataset
@@ -79,9 +82,50 @@ pub struct ViewArgs {
     /// What failures are ranked by: `error`, `distance`, `nees`, `conflict`, `gain` or `escape` [default: error]
     #[arg(long, value_name = "ORDER", value_parser = parse_order)]
     pub rank: Option<Order>,
+    /// Let browsers look at this session too, at this address [default: 127.0.0.1:8080]
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        num_args = 0..=1,
+        default_missing_value = "127.0.0.1:8080",
+        conflicts_with_all = ["print", "plain", "json", "failures"]
+    )]
+    pub serve: Option<SocketAddr>,
+    /// With --serve: browsers may only look
+    #[arg(long, requires = "serve")]
+    pub read_only: bool,
     /// How many colours to use: `auto` goes by TERM, COLORTERM and NO_COLOR
     #[arg(long, value_enum, default_value_t)]
     pub color: Colors,
+    /// Where the dataset has its roles.
+    #[command(flatten)]
+    pub mapping: TopicArgs,
+}
+
+/// Arguments of `serve`.
+#[derive(Clone, Debug, Args)]
+pub struct ServeArgs {
+    /// Address to listen on: beyond this machine (`0.0.0.0`) a token is demanded, which is printed
+    #[arg(long, default_value = "127.0.0.1", value_parser = parse_host)]
+    pub host: IpAddr,
+    /// Port to listen on; 0 takes a free one
+    #[arg(long, default_value_t = 8080)]
+    pub port: u16,
+    /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
+    #[arg(long)]
+    pub data: Option<PathBuf>,
+    /// Checkpoint folder; repeat for several models [default: the sample model]
+    #[arg(long)]
+    pub model: Vec<PathBuf>,
+    /// State string to start from, as copied with `y`
+    #[arg(long)]
+    pub state: Option<String>,
+    /// Browsers may only look
+    #[arg(long)]
+    pub read_only: bool,
+    /// Serve the page of this folder instead of the built-in one
+    #[arg(long, value_name = "DIR")]
+    pub web_root: Option<PathBuf>,
     /// Where the dataset has its roles.
     #[command(flatten)]
     pub mapping: TopicArgs,
@@ -341,6 +385,17 @@ fn parse_size(text: &str) -> Result<(u16, u16), String> {
     parse()
         .filter(|&(columns, rows)| (1..=1000).contains(&columns) && (1..=1000).contains(&rows))
         .ok_or_else(|| format!("{text:?} is not COLUMNSxROWS, for example 120x40"))
+}
+
+fn parse_host(text: &str) -> Result<IpAddr, String> {
+    let text = if text == "localhost" {
+        "127.0.0.1"
+    } else {
+        text
+    };
+    text.parse().map_err(|_| {
+        format!("{text:?} is no address of this machine, for example 127.0.0.1 or 0.0.0.0")
+    })
 }
 
 fn parse_minutes(text: &str) -> Result<f64, String> {

@@ -5,6 +5,7 @@ pub mod export;
 pub mod info;
 pub mod open;
 pub mod sample;
+pub mod serve;
 pub mod simulate;
 pub mod train;
 pub mod view;
@@ -21,6 +22,7 @@ use crate::cli::{Cli, Command};
 pub fn dispatch(cli: Cli) -> anyhow::Result<()> {
     match cli.command.unwrap_or(Command::View(cli.view)) {
         Command::View(args) => view::run(args),
+        Command::Serve(args) => serve::run(args),
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Train(args) => train::run(&args),

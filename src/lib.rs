@@ -6,7 +6,7 @@
 //!                       switches α[t, expert] ─► filter ─► Belief per step ─► rollout ─► decode
 //!                                                    │             └───────► position probe
 //!                                                    ▼
-//!                                    Snapshot ─► the terminal
+//!                                    Snapshot ─► the terminal, browsers
 //! ```
 //!
 //! # Who may import whom
@@ -33,3 +33,4 @@ pub mod session;
 pub mod sim;
 pub mod train;
 pub mod tui;
+pub mod web;

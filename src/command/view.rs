@@ -1,8 +1,8 @@
 //! `view`: opens a dataset and models, sends keys, and draws: once as text, or in the terminal until the user quits.
 
-mod cache;
+pub(super) mod cache;
 mod failures;
-mod follow;
+pub(super) mod follow;
 mod report;
 
 use std::io::{self, IsTerminal};
@@ -17,7 +17,7 @@ use ratatui_image::picker::ProtocolType;
 use self::follow::{Follower, Watched};
 use self::report::Report;
 use super::open::{self, Opened};
-use super::say;
+use super::{say, serve};
 use crate::cli::{Colors, ImageProtocol, ViewArgs};
 use crate::session::Session;
 use crate::session::command::Command;
@@ -39,6 +39,9 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         eprintln!(
             "poescope: standard output is no terminal, so one frame is drawn as with --print"
         );
+    }
+    if !in_terminal && args.serve.is_some() {
+        bail!("--serve needs a terminal here; `poescope serve` needs none");
     }
     let size = if in_terminal {
         terminal_size().unwrap_or(args.size)
@@ -84,6 +87,10 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         return say(&report.of(&app.session, &app.face, size)?);
     }
     app.session.survey();
+    let server = args
+        .serve
+        .map(|address| serve::attach(&mut app.session, address, args.read_only));
+    let _server = server.transpose()?;
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
     let _follower = follower.context("starting a thread to watch the models")?;
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
@@ -96,7 +103,7 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
 }
 
 /// Opens what the arguments name. The folders that training runs write to are to be watched.
-fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
+pub(super) fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
     let folders = open::folders(&args.model)?;
     // Before the models are read: what is written meanwhile is seen.
     let watched = folders.iter().enumerate();

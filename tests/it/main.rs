@@ -23,4 +23,5 @@ mod resume;
 mod sample;
 mod tensorboard;
 mod topics;
+mod web;
 mod whole_or_absent;

@@ -1,0 +1,247 @@
+//! Between the session and the viewers: takes snapshots in, tells everybody what changed, hears what they ask for.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use tokio::sync::Notify;
+use tokio::time::{sleep, sleep_until};
+
+use super::asked::{Asked, is_kept, of_click, of_control};
+use super::piece::{Change, Does};
+use super::protocol::inbound::Inbound;
+use super::protocol::notification::{Notification, NotificationProps, RemoveNotification};
+use super::protocol::{Key, write};
+use super::scene::{Composer, Shown};
+use super::stage::Stage;
+use super::talk::Talk;
+use super::viewer::{HOLD, Viewer};
+use crate::session::attach::Attached;
+use crate::session::command::Command;
+use crate::session::snapshot::{Message, Snapshot};
+use crate::session::wants::Wants;
+
+/// No more often than so: a browser paints no faster.
+const PERIOD: Duration = Duration::from_millis(16);
+
+/// What all viewers share.
+pub struct Hub {
+    attached: Attached,
+    /// A snapshot came, or something else is to be looked at.
+    pub news: Arc<Notify>,
+    read_only: bool,
+    spread: AtomicBool,
+    started: Instant,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    stage: Stage,
+    composer: Composer,
+    viewers: Vec<Arc<Viewer>>,
+    shown: Option<(Arc<Snapshot>, Shown)>,
+    /// The notification that is shown, and how many there were.
+    note: Option<Message>,
+    notes: u64,
+}
+
+impl Hub {
+    /// Between this session and nobody yet.
+    pub fn new(attached: Attached, news: Arc<Notify>, read_only: bool) -> Self {
+        let hub = Self {
+            attached,
+            news,
+            read_only,
+            spread: AtomicBool::new(false),
+            started: Instant::now(),
+            state: Mutex::default(),
+        };
+        hub.refresh();
+        hub
+    }
+
+    /// The server's clock.
+    pub fn secs(&self) -> f64 {
+        self.started.elapsed().as_secs_f64()
+    }
+
+    /// Tells everybody what is new, whenever there is something, for ever.
+    pub async fn run(&self) {
+        let mut last = Instant::now();
+        let mut holding = false;
+        loop {
+            tokio::select! {
+                () = self.news.notified() => {}
+                () = sleep(HOLD / 2), if holding => {}
+            }
+            sleep_until((last + PERIOD).into()).await;
+            last = Instant::now();
+            self.refresh();
+            let state = self.lock();
+            holding = state.viewers.iter().fold(false, |holding, viewer| {
+                viewer.let_go(&state.stage, last) | holding
+            });
+        }
+    }
+
+    /// Takes the newest snapshot in.
+    fn refresh(&self) {
+        let snapshot = self.attached.snapshot();
+        let shown = Shown {
+            read_only: self.read_only,
+            spread: self.spread.load(Ordering::Relaxed),
+        };
+        let mut state = self.lock();
+        let same = state
+            .shown
+            .as_ref()
+            .is_some_and(|(before, how)| Arc::ptr_eq(before, &snapshot) && *how == shown);
+        if same {
+            return;
+        }
+        let pieces = state.composer.compose(&snapshot, shown);
+        let mut moment = state.stage.show(pieces);
+        moment.changes.extend(state.notify(&snapshot));
+        let moment = Arc::new(moment);
+        for viewer in &state.viewers {
+            viewer.tell(&moment, &snapshot);
+        }
+        state.shown = Some((snapshot, shown));
+    }
+
+    /// Takes a viewer in; none where there are so many already.
+    pub fn join(&self, most: usize) -> Option<Arc<Viewer>> {
+        let mut state = self.lock();
+        if state.viewers.len() >= most {
+            return None;
+        }
+        let viewer = Arc::new(Viewer::come(&state.stage));
+        state.viewers.push(Arc::clone(&viewer));
+        Some(viewer)
+    }
+
+    /// Lets a viewer go.
+    pub fn leave(&self, viewer: &Arc<Viewer>) {
+        self.lock()
+            .viewers
+            .retain(|other| !Arc::ptr_eq(other, viewer));
+    }
+
+    /// Ends every connection.
+    pub fn close_all(&self, code: u16, reason: &str) {
+        for viewer in &self.lock().viewers {
+            viewer.close(code, reason);
+        }
+    }
+
+    /// Does what a viewer says.
+    pub fn hear(&self, viewer: &Viewer, message: &Inbound) {
+        let snapshot = self.attached.snapshot();
+        let asked = match message {
+            Inbound::Update { uuid, updates } => {
+                let Some(value) = &updates.value else {
+                    return;
+                };
+                if is_kept(uuid) {
+                    viewer.hold(uuid, value);
+                    self.news.notify_one();
+                }
+                of_control(uuid, value, &snapshot)
+            }
+            Inbound::Click {
+                name,
+                instance_index,
+            } => of_click(name, *instance_index),
+            Inbound::Other => Asked::Nothing,
+        };
+        let commands = match asked {
+            Asked::Commands(commands) => commands,
+            Asked::Key(key, number) => viewer.talk(&snapshot, |talk| {
+                let command = talk.press(&key, number, &snapshot);
+                self.permitted(talk, command)
+            }),
+            Asked::Line(line, number) => viewer.talk(&snapshot, |talk| {
+                let command = talk.line(&line, number, &snapshot);
+                self.permitted(talk, command)
+            }),
+            Asked::Spread(on) => {
+                if !self.read_only {
+                    self.spread.store(on, Ordering::Relaxed);
+                    self.attached.want(Wants {
+                        spread: on,
+                        ..Wants::default()
+                    });
+                    self.news.notify_one();
+                }
+                return;
+            }
+            Asked::Nothing => return,
+        };
+        if !self.read_only {
+            for command in commands {
+                // Where more waits than the session takes in, the newest is dropped; the control is put right later.
+                self.attached.apply(command);
+            }
+        }
+    }
+
+    fn permitted(&self, talk: &mut Talk, command: Option<Command>) -> Vec<Command> {
+        if self.read_only && command.is_some() {
+            talk.refuse();
+            return Vec::new();
+        }
+        command.into_iter().collect()
+    }
+
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl State {
+    /// A message that is another one than before, as a notification; the one before goes. They are not for those who
+    /// come later.
+    fn notify(&mut self, snapshot: &Snapshot) -> Vec<Arc<Change>> {
+        if snapshot.message == self.note {
+            return Vec::new();
+        }
+        let mut changes = Vec::new();
+        let uuid = |number: u64| format!("poescope-note-{number}");
+        // Keys are the same for all, so that of many unsent ones only the newest is sent.
+        if self.note.is_some() {
+            let end = write(&RemoveNotification {
+                uuid: uuid(self.notes),
+            });
+            changes.push(Change {
+                key: Key::note("end"),
+                does: Does::Make(end),
+            });
+        }
+        if let Some(message) = &snapshot.message {
+            self.notes += 1;
+            let (title, color, secs) = if message.error {
+                ("That did not work", "red", 8.0)
+            } else {
+                ("poescope", "gray", 3.0)
+            };
+            let show = Notification {
+                uuid: uuid(self.notes),
+                props: NotificationProps {
+                    title: title.to_owned(),
+                    body: message.text.clone(),
+                    loading: false,
+                    with_close_button: true,
+                    auto_close_seconds: Some(secs),
+                    color: Some(color.to_owned()),
+                },
+            };
+            changes.push(Change {
+                key: Key::note("show"),
+                does: Does::Make(write(&show)),
+            });
+        }
+        self.note.clone_from(&snapshot.message);
+        changes.into_iter().map(Arc::new).collect()
+    }
+}

@@ -1,0 +1,58 @@
+//! A bar from 0 to 100.
+
+use serde::Serialize;
+
+use super::about;
+
+/// A bar from 0 to 100.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "type", rename = "GuiProgressBarMessage")]
+pub struct ProgressBar {
+    /// Its name, the same on every connection.
+    pub uuid: String,
+    /// Where it stands.
+    pub container_uuid: String,
+    /// 0 to 100.
+    pub value: f64,
+    /// How it looks.
+    pub props: ProgressBarProps,
+}
+
+about!(ProgressBar, gui uuid);
+
+/// How it looks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProgressBarProps {
+    /// Place in its container, ascending.
+    pub order: f64,
+    /// Whether it has moving stripes.
+    pub animated: bool,
+    /// A name of the client's palette; none for its own.
+    pub color: Option<String>,
+    /// Whether it is there at all.
+    pub visible: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::golden::{container, holds, uuid};
+    use super::*;
+
+    #[test]
+    fn is_what_the_reference_sends() {
+        let name = "s2c_022_gui_progress_bar.bin";
+        let props = ProgressBarProps {
+            order: 21.0,
+            animated: true,
+            color: Some("cyan".to_owned()),
+            visible: true,
+        };
+        let bar = ProgressBar {
+            uuid: uuid(name),
+            container_uuid: container(name),
+            value: 35.0,
+            props,
+        };
+        holds(&bar, name, 0);
+    }
+}

@@ -1,0 +1,67 @@
+//! How far the estimates are off over the episode: positions, then frames.
+
+use super::{BELIEF, Chart, PREDICTION, line};
+use crate::session::snapshot::{Estimate, PositionView, Snapshot};
+use crate::web::protocol::uplot::{Series, UplotProps};
+use crate::web::scene::head::steps;
+
+pub fn position(snapshot: &Snapshot) -> UplotProps {
+    let mut chart = Chart::over_steps(steps(snapshot));
+    if let Some(position) = &snapshot.position {
+        let (belief, prediction) = (&position.belief, &position.prediction);
+        let claims = belief
+            .iter()
+            .map(|estimate| estimate.map_or(f64::NAN, |it| claim_cm(it.covariance)));
+        let fill = Some("rgba(122,122,122,0.25)".to_owned());
+        chart.add(
+            Series {
+                fill,
+                ..line("claimed σ", "transparent", &[])
+            },
+            claims,
+        );
+        let errors: Vec<f64> = distances_cm(belief, position).collect();
+        let now = errors.get(snapshot.cursor).copied().unwrap_or(f64::NAN);
+        chart.add(line("belief", BELIEF, &[]), errors);
+        chart.add(
+            line("prediction", PREDICTION, &[2, 3]),
+            distances_cm(prediction, position),
+        );
+        chart.mark(snapshot.cursor, now);
+    }
+    chart.done("position error", "cm", Some([Some(0.0), None]))
+}
+
+pub fn psnr(snapshot: &Snapshot) -> UplotProps {
+    let mut chart = Chart::over_steps(steps(snapshot));
+    let value = |value: Option<f32>| value.map_or(f64::NAN, f64::from);
+    let belief: Vec<f64> = snapshot
+        .psnr_db
+        .iter()
+        .map(|step| value(step.belief))
+        .collect();
+    let now = belief.get(snapshot.cursor).copied().unwrap_or(f64::NAN);
+    chart.add(line("belief", BELIEF, &[]), belief);
+    let prediction = snapshot.psnr_db.iter().map(|step| value(step.prediction));
+    chart.add(line("prediction", PREDICTION, &[2, 3]), prediction);
+    chart.mark(snapshot.cursor, now);
+    chart.done("PSNR of the frames", "dB", None)
+}
+
+/// Distances of estimates from the truth; NaN where one of both is not there.
+pub fn distances_cm<'a>(
+    estimates: &'a [Option<Estimate>],
+    position: &'a PositionView,
+) -> impl Iterator<Item = f64> + 'a {
+    estimates.iter().enumerate().map(|(step, estimate)| {
+        let both = estimate.zip(position.truth.get(step));
+        both.map_or(f64::NAN, |(estimate, truth)| {
+            100.0 * f64::from((estimate.x - truth.x).hypot(estimate.y - truth.y))
+        })
+    })
+}
+
+/// The distance that a covariance `[xx, xy, yy]` in m² claims, as a root of its mean square.
+pub fn claim_cm([xx, _, yy]: [f32; 3]) -> f64 {
+    100.0 * f64::from(xx + yy).max(0.0).sqrt()
+}

@@ -1,0 +1,101 @@
+/** The websocket: opens, decodes, comes back when it is lost. Knows nothing of what the messages mean. */
+import { backoffMs } from "./backoff";
+import { ProtocolError } from "./error";
+import { type Batch, decodeFrame } from "./frame";
+import { encodeMessage, type Outgoing } from "./outgoing";
+
+export const SUBPROTOCOL = "viser-v1.1.1";
+
+/** An opening socket gets so long before it is given up. */
+const OPEN_MS = 5000;
+/** A connection that held so long counts as good, and the next wait is the shortest again. */
+const GOOD_MS = 3000;
+
+export type Status =
+  | { kind: "connecting"; attempt: number }
+  | { kind: "open" }
+  /** `reason` is the server's own where it gave one. */
+  | { kind: "lost"; reason: string; retryAtMs: number };
+
+export interface Listener {
+  /** A new connection: what came before no longer holds, all of it is sent again. */
+  opened(): void;
+  received(batch: Batch): void;
+  status(status: Status): void;
+}
+
+/** One server, for as long as the page is open. */
+export class Connection {
+  readonly #url: string;
+  readonly #listener: Listener;
+  #socket: WebSocket | undefined;
+  #timer: ReturnType<typeof setTimeout> | undefined;
+  #failures = 0;
+  #openedAtMs = 0;
+  /** Why this side closed it, if it did. */
+  #fault: string | undefined;
+
+  constructor(url: string, listener: Listener) {
+    this.#url = url;
+    this.#listener = listener;
+  }
+
+  connect(): void {
+    clearTimeout(this.#timer);
+    this.#socket?.close();
+    this.#fault = undefined;
+    this.#listener.status({ kind: "connecting", attempt: this.#failures + 1 });
+    const socket = new WebSocket(this.#url, [SUBPROTOCOL]);
+    this.#socket = socket;
+    socket.binaryType = "arraybuffer";
+    this.#timer = setTimeout(() => {
+      this.#fault = `no answer within ${OPEN_MS / 1000} s`;
+      socket.close();
+    }, OPEN_MS);
+    socket.addEventListener("open", () => this.#current(socket, () => this.#opened()));
+    socket.addEventListener("message", (event) => this.#current(socket, () => this.#received(event.data)));
+    socket.addEventListener("close", (event) => this.#current(socket, () => this.#closed(event)));
+  }
+
+  /** Whether it was handed to the socket; what is said while there is none is dropped, the state comes from the server. */
+  send(message: Outgoing): boolean {
+    if (this.#socket?.readyState !== WebSocket.OPEN) return false;
+    this.#socket.send(encodeMessage(message));
+    return true;
+  }
+
+  /** Events of a socket that was replaced mean nothing any more. */
+  #current(socket: WebSocket, act: () => void): void {
+    if (socket === this.#socket) act();
+  }
+
+  #opened(): void {
+    clearTimeout(this.#timer);
+    this.#openedAtMs = performance.now();
+    this.#listener.opened();
+    this.#listener.status({ kind: "open" });
+  }
+
+  #received(data: unknown): void {
+    try {
+      if (!(data instanceof ArrayBuffer)) throw new ProtocolError("a text message; all are binary");
+      this.#listener.received(decodeFrame(data));
+    } catch (error) {
+      // Half of a state is worse than none: ask for all of it again.
+      this.#fault = error instanceof Error ? error.message : String(error);
+      console.error("poescope: cannot read what the server sent:", error);
+      this.#socket?.close(4000, "unreadable");
+    }
+  }
+
+  #closed(event: CloseEvent): void {
+    clearTimeout(this.#timer);
+    const held = this.#openedAtMs > 0 && performance.now() - this.#openedAtMs > GOOD_MS;
+    this.#openedAtMs = 0;
+    this.#failures = held ? 1 : this.#failures + 1;
+    const wait = backoffMs(this.#failures, Math.random());
+    const reason = this.#fault ?? (event.reason || "the server does not answer");
+    this.#listener.status({ kind: "lost", reason, retryAtMs: performance.now() + wait });
+    this.#timer = setTimeout(() => this.connect(), wait);
+  }
+}

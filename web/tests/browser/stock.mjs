@@ -1,0 +1,153 @@
+// Drives viser's own client in a real Chromium against a running server, and keeps pictures of it.
+//
+//   node tests/browser/stock.mjs --page PATH/viser/client/build/index.html [--command "… serve --port {port}"] [--out DIR] [--require]
+//
+// The page is the one file of the Python package viser 1.1.1. Where it or Chromium is not there this says so and ends
+// well; --require makes that a failure.
+import { spawn, spawnSync } from "node:child_process";
+import { existsSync, mkdirSync, readFileSync } from "node:fs";
+import { createServer as httpServer } from "node:http";
+import { createServer } from "node:net";
+import { parseArgs } from "node:util";
+import { chromium } from "playwright-core";
+
+const { values: options } = parseArgs({
+  options: {
+    page: { type: "string", default: process.env["VISER_CLIENT"] ?? "" },
+    command: { type: "string", default: "../target/release/poescope serve --port {port}" },
+    out: { type: "string", default: "tests/browser/out" },
+    require: { type: "boolean", default: false },
+  },
+});
+
+const SIZES = [
+  [1280, 720],
+  [400, 800],
+  [1920, 1080],
+];
+const PATIENCE = 40_000;
+/** What the page itself complains about, whatever it is told. */
+const BENIGN = /favicon|passive event listener/i;
+
+const executablePath = [process.env["CHROMIUM"], "chromium", "chromium-browser", "google-chrome"]
+  .filter(Boolean)
+  .map((name) => spawnSync("which", [name]).stdout.toString().trim())
+  .find(Boolean);
+const missing =
+  executablePath === undefined ? "no Chromium" : existsSync(options.page) ? undefined : "no page of viser 1.1.1";
+if (missing !== undefined) {
+  console.log(`skipped: ${missing}`);
+  process.exit(options.require ? 1 : 0);
+}
+
+const port = await freePort();
+const page = readFileSync(options.page);
+const site = httpServer((_, answer) => answer.setHeader("Content-Type", "text/html").end(page));
+await new Promise((done) => site.listen(0, "127.0.0.1", done));
+const url = `http://127.0.0.1:${site.address().port}/?websocket=ws://127.0.0.1:${port}`;
+const faults = [];
+let checks = 0;
+let server = await serve();
+mkdirSync(options.out, { recursive: true });
+const browser = await chromium.launch({
+  executablePath,
+  args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+});
+try {
+  const one = await open();
+  const other = await open();
+  await scrubs(one, other);
+  await switches(one, other);
+  for (const [width, height] of SIZES) {
+    await one.setViewportSize({ width, height });
+    await one.waitForTimeout(1500);
+    await one.screenshot({ path: `${options.out}/stock-${width}.png` });
+  }
+  await one.setViewportSize({ width: 1280, height: 720 });
+  await reconnects(one);
+} finally {
+  await browser.close();
+  server.kill();
+  site.close();
+}
+for (const fault of faults) console.log(`FAILED ${fault}`);
+console.log(`${checks - faults.length} of ${checks} checks hold; pictures in ${options.out}`);
+process.exit(faults.length === 0 ? 0 : 1);
+
+async function open() {
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
+  page.errors = [];
+  page.on("console", (message) => {
+    if (message.type() === "error" && !BENIGN.test(message.text())) page.errors.push(message.text());
+  });
+  page.on("pageerror", (error) => page.errors.push(String(error)));
+  await page.goto(url);
+  await holds("it connects", page, () => document.body.innerText.includes("Experts"));
+  return page;
+}
+
+async function scrubs(one, other) {
+  const before = await pictures(other);
+  const slider = one.locator("label", { hasText: /^Step$/ }).first();
+  const id = await slider.getAttribute("for");
+  const thumb = one.locator(`[id="${id}"] [role=slider]`);
+  await thumb.focus();
+  for (let press = 0; press < 6; press++) await thumb.press("ArrowRight");
+  await holds("the other client shows the step", other, () => /step\s*7\s*of/.test(document.body.innerText));
+  check("the other client shows its frames", JSON.stringify(await pictures(other)) !== JSON.stringify(before));
+  await holds("prediction and error are there", one, () => document.querySelectorAll("img").length >= 4);
+}
+
+async function switches(one, other) {
+  const before = await pictures(other);
+  const box = (page) => page.getByLabel("V vision", { exact: true });
+  check("vision is on", await box(other).isChecked());
+  await box(one).click({ force: true });
+  await other.waitForTimeout(1500);
+  check("a switch shows in the other client", !(await box(other).isChecked()));
+  check("the belief changes with it", JSON.stringify(await pictures(other)) !== JSON.stringify(before));
+  for (const page of [one, other]) check(`no errors: ${page.errors.join(" | ")}`, page.errors.length === 0);
+}
+
+async function reconnects(page) {
+  await page.bringToFront();
+  server.kill("SIGTERM");
+  await new Promise((done) => server.once("exit", done));
+  await page.waitForTimeout(1000);
+  server = await serve();
+  // A new session begins at the first step.
+  await holds("it comes back after a restart", page, () => /step\s*1\s*of/.test(document.body.innerText));
+}
+
+/** What the frames are, as their addresses say. */
+function pictures(page) {
+  return page.evaluate(() => [...document.querySelectorAll("img")].map((image) => image.src));
+}
+
+async function holds(what, page, condition) {
+  const held = await page.waitForFunction(condition, undefined, { timeout: PATIENCE, polling: 200 }).catch(() => undefined);
+  check(what, held !== undefined);
+}
+
+function check(what, held) {
+  checks += 1;
+  if (!held) faults.push(what);
+}
+
+async function serve() {
+  const [program, ...rest] = options.command.replace("{port}", String(port)).split(" ");
+  const child = spawn(program, rest, { stdio: ["ignore", "pipe", "inherit"] });
+  await new Promise((done, fail) => {
+    child.stdout.once("data", done);
+    child.once("exit", () => fail(new Error(`${options.command} ended`)));
+  });
+  return child;
+}
+
+async function freePort() {
+  const probe = createServer();
+  await new Promise((done) => probe.listen(0, "127.0.0.1", done));
+  const { port } = probe.address();
+  await new Promise((done) => probe.close(done));
+  return port;
+}
