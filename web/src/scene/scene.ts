@@ -13,7 +13,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Client } from "../client";
 import { fixed } from "../format";
-import { PATH_POINTS } from "../names";
+import { PATH_POINTS, PULL } from "../names";
 import type { SceneNode } from "../state/scene";
 import { token } from "../theme";
 import { h } from "../ui/dom";
@@ -161,6 +161,10 @@ export class SceneView {
       shown.holder.quaternion.set(qx, qy, qz, qw);
     }
     shown.holder.visible = node.visible;
+    const puller = node.name.startsWith(PULL) ? node.name.slice(PULL.length) : undefined;
+    const letter = this.#client.meta?.experts.find(({ name }) => name === puller)?.letter;
+    // Colours alone would not tell the arrows apart.
+    if (letter !== undefined) this.#labels.set(node.name, letter, tipOf(node, shown.holder));
     if (node.type === "LabelMessage") this.#labels.set(node.name, String(node.props["text"] ?? ""), shown.holder);
   }
 
@@ -256,6 +260,16 @@ export class SceneView {
     document.addEventListener("visibilitychange", () => this.invalidate());
   }
 }
+
+/** A place at the end of a node's last arrow, which moves with the node. */
+function tipOf(node: SceneNode, holder: Group): Object3D {
+  const [x = 0, y = 0, z = 0] = floats(node.props["points"]).slice(-3);
+  const tip = holder.getObjectByName(TIP) ?? Object.assign(new Group(), { name: TIP });
+  tip.position.set(x, y, z);
+  return holder.add(tip) && tip;
+}
+
+const TIP = "tip";
 
 const LEGEND: [string, string][] = [
   ["truth", "truth"],
