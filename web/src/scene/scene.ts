@@ -24,7 +24,7 @@ import { Labels } from "./labels";
 import { pick } from "./pick";
 
 /** Around the path: the plate is larger than its own middle. */
-const ROOM_M = 0.04;
+const ROOM_M = 0.055;
 
 interface Shown {
   holder: Group;

@@ -118,7 +118,7 @@ class Row {
 
   update(expert: ExpertMeta, meta: Meta): void {
     this.#controls.forEach((each) => each.update());
-    setText(this.#mean, percent(expert.share_mean));
+    setText(this.#mean, percent(expert.share.length === 0 ? null : expert.share_mean));
     setText(this.#position, percent(expert.share_position));
     this.#bar.style.width = `${(expert.share_mean ?? 0) * 100}%`;
     const damaged = meta.corruptions.some(({ modality }) => sees(expert.name, modality));
