@@ -25,6 +25,8 @@ import { pick } from "./pick";
 
 /** Around the path: the plate is larger than its own middle. */
 const ROOM_M = 0.055;
+/** A plate that hardly moves is still seen with its surroundings. */
+const NEAREST_M = 0.14;
 
 interface Shown {
   holder: Group;
@@ -164,7 +166,8 @@ export class SceneView {
     const puller = node.name.startsWith(PULL) ? node.name.slice(PULL.length) : undefined;
     const letter = this.#client.meta?.experts.find(({ name }) => name === puller)?.letter;
     // Colours alone would not tell the arrows apart.
-    if (letter !== undefined) this.#labels.set(node.name, letter, tipOf(node, shown.holder));
+    if (letter !== undefined && lengthOf(node) > SEEN_M) this.#labels.set(node.name, letter, tipOf(node, shown.holder));
+    else if (puller !== undefined) this.#labels.remove(node.name);
     if (node.type === "LabelMessage") this.#labels.set(node.name, String(node.props["text"] ?? ""), shown.holder);
   }
 
@@ -206,7 +209,8 @@ export class SceneView {
     if (path.length > 3) {
       const box = new Box3().setFromArray(path);
       box.getCenter(to);
-      away.setLength((box.getSize(new Vector3()).length() / 2 + ROOM_M) / Math.tan(this.#narrowest() / 2));
+      const radius = Math.max(box.getSize(new Vector3()).length() / 2 + ROOM_M, NEAREST_M);
+      away.setLength(radius / Math.tan(this.#narrowest() / 2));
     }
     this.#camera.position.copy(to).add(away);
     this.#controls?.target.copy(to);
@@ -270,6 +274,14 @@ function tipOf(node: SceneNode, holder: Group): Object3D {
 }
 
 const TIP = "tip";
+
+/** Arrows that are shorter are none: the expert is off. */
+const SEEN_M = 0.002;
+
+function lengthOf(node: SceneNode): number {
+  const [x = 0, y = 0, z = 0, u = 0, v = 0, w = 0] = floats(node.props["points"]);
+  return Math.hypot(u - x, v - y, w - z);
+}
 
 const LEGEND: [string, string][] = [
   ["truth", "truth"],
