@@ -44,6 +44,8 @@ export class App {
   constructor(root: HTMLElement, client: Client) {
     this.#client = client;
     this.#root = root;
+    // Nothing to look at until the server has said what there is.
+    root.classList.add("blank");
     this.#header = new Header(client, {
       help: () => this.#face("help"),
       palette: () => client.key(":"),
@@ -124,6 +126,7 @@ export class App {
     this.#header.update(statusText(this.#status), open);
     // Between losing the old connection and the end of the new one's replay nothing is brought up to date.
     if (!open || !client.store.complete) return;
+    this.#root.classList.remove("blank");
     const changes = client.store.takeChanges();
     this.#experts.update();
     this.#settings.update();

@@ -26,7 +26,7 @@ export function withUnit(value: number | null | undefined, digits: number, unit:
   return text === NONE ? text : `${text} ${unit}`;
 }
 
-/** How far ahead of the rollout's start a step is; nothing at it and before. */
-export function ahead(step: number, start: number): string {
-  return step > start ? `+${step - start}` : "";
+/** How far ahead of the rollout's start a step is; nothing at it and before, and beyond the horizon. */
+export function ahead(step: number, start: number, horizon: number): string {
+  return step > start && step <= start + horizon ? `+${step - start}` : "";
 }

@@ -92,8 +92,8 @@ export const TERMS = {
     text: "Error of the prediction against steps ahead, with the spread it claims, beside the error of a plate that stands still.",
   },
   ellipse: {
-    title: "Ellipses",
-    text: "Solid holds one σ, 39 % of the mass in a plane; dashed holds 95 %, at 2.45 σ.",
+    title: "The table",
+    text: "The plate as recorded, and pale where it is predicted. Around the belief: the solid ellipse holds one σ, 39 % of the mass in a plane, the dashed one 95 %. Arrows with letters are the sensors' pulls, one after the other; the red one is the contact force. A click on the path goes there.",
   },
   damage: {
     title: "Damaged input",

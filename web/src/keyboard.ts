@@ -17,6 +17,7 @@ export class Keyboard {
     this.#face = face;
     this.#blocked = blocked;
     document.addEventListener("keydown", (event) => this.#pressed(event));
+    giveBack();
   }
 
   #pressed(event: KeyboardEvent): void {
@@ -41,14 +42,6 @@ export class Keyboard {
       event.preventDefault();
       return this.#client.key(name);
     }
-    // A control that was clicked gives the keyboard back; one that was tabbed to keeps what is its own.
-    const { target } = event;
-    if (
-      target instanceof HTMLElement &&
-      target.matches("button, input, select, summary") &&
-      !target.matches(":focus-visible, select")
-    )
-      target.blur();
     const line = keys.find((each) => each.keys.includes(name));
     if (line === undefined || name === "<tab>" || name === "<s-tab>" || needed(document.activeElement, name)) return;
     event.preventDefault();
@@ -68,4 +61,17 @@ export function needed(target: EventTarget | null, name: string): boolean {
   if (target.matches("input[type=range]")) return /^<(left|right|up|down|home|end|pageup|pagedown)>$/.test(name);
   if (target.matches("select")) return name.length === 1 || /^<(up|down|home|end|esc)>$/.test(name);
   return target.matches("input[type=text], textarea");
+}
+
+/** A control that was used with a pointer gives the keyboard back; one that was tabbed to keeps it. */
+function giveBack(): void {
+  let pointed = false;
+  const release = ({ target }: Event) => {
+    const used = target instanceof Element ? target.closest("button, input:not([type=text]), select, summary") : null;
+    if (pointed && used instanceof HTMLElement && used.closest("dialog") === null) used.blur();
+  };
+  document.addEventListener("pointerdown", () => (pointed = true), true);
+  document.addEventListener("keydown", () => (pointed = false), true);
+  document.addEventListener("click", (event) => event.target instanceof HTMLSelectElement || release(event));
+  document.addEventListener("change", release);
 }

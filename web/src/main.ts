@@ -18,16 +18,20 @@ let wanted = stateOf(location.search);
 
 const client = new Client((message) => connection.send(message));
 const app = new App(document.getElementById("app") as HTMLElement, client);
-const connection = new Connection(websocketUrl(page), {
-  opened: () => client.opened(),
-  received(batch) {
-    client.store.apply(batch.messages);
-    if (client.store.complete && wanted !== undefined) {
-      client.restore(wanted);
-      wanted = undefined;
-    }
-    app.invalidate();
+const connection = new Connection(
+  websocketUrl(page),
+  {
+    opened: () => client.opened(),
+    received(batch) {
+      client.store.apply(batch.messages);
+      if (client.store.complete && wanted !== undefined) {
+        client.restore(wanted);
+        wanted = undefined;
+      }
+      app.invalidate();
+    },
+    status: (status) => app.status(status),
   },
-  status: (status) => app.status(status),
-});
+  () => fetch(".", { method: "HEAD", cache: "no-store" }).then((answer) => answer.ok),
+);
 connection.connect();

@@ -45,5 +45,11 @@ export const KEYS = "poescope-keys";
 export const META = "poescope-meta";
 export const FACE = "poescope-face";
 
+/** An arrow for each sensor, `/pull/vision`: what it pulls the position by. */
+export const PULL = "/pull/";
+
+/** Notifications of what the session said last; the page has a line for that. */
+export const SAID = "poescope-note-";
+
 /** One instance a step; a click on one goes there. */
 export const PATH_POINTS = "/path/points";

@@ -32,11 +32,16 @@ export class Connection {
   #timer: ReturnType<typeof setTimeout> | undefined;
   #failures = 0;
   #openedAtMs = 0;
+  readonly #isThere: () => Promise<boolean>;
+  /** Whether the server answered otherwise, when it last refused. */
+  #there = false;
   /** Why this side closed it, if it did. */
   #fault: string | undefined;
 
-  constructor(url: string, listener: Listener) {
+  /** `isThere`: whether the server answers at all, asked where it opens no websocket. */
+  constructor(url: string, listener: Listener, isThere: () => Promise<boolean>) {
     this.#url = url;
+    this.#isThere = isThere;
     this.#listener = listener;
   }
 
@@ -71,6 +76,7 @@ export class Connection {
 
   #opened(): void {
     clearTimeout(this.#timer);
+    this.#there = false;
     this.#openedAtMs = performance.now();
     this.#listener.opened();
     this.#listener.status({ kind: "open" });
@@ -88,13 +94,27 @@ export class Connection {
     }
   }
 
+  /**
+   * A browser does not say why a websocket was not opened. Whether the server itself is there tells a missing token and
+   * a full house from a server that is away; that is known by the next time.
+   */
+  #whyRefused(): string {
+    const there = this.#there;
+    this.#there = false;
+    this.#isThere().then(
+      (is) => (this.#there = is),
+      () => {},
+    );
+    return there ? "refused: the link may lack its token, or there are too many viewers" : "the server does not answer";
+  }
+
   #closed(event: CloseEvent): void {
     clearTimeout(this.#timer);
     const held = this.#openedAtMs > 0 && performance.now() - this.#openedAtMs > GOOD_MS;
     this.#openedAtMs = 0;
     this.#failures = held ? 1 : this.#failures + 1;
     const wait = backoffMs(this.#failures, Math.random());
-    const reason = this.#fault ?? (event.reason || "the server does not answer");
+    const reason = this.#fault ?? (event.reason || this.#whyRefused());
     this.#listener.status({ kind: "lost", reason, retryAtMs: performance.now() + wait });
     this.#timer = setTimeout(() => this.connect(), wait);
   }

@@ -13,7 +13,9 @@ export class Labels {
       this.#labels.set(name, label);
       this.element.append(label.element);
     }
+    label.object = object;
     label.element.textContent = text;
+    label.element.className = text.length === 1 ? "letter" : "";
   }
 
   remove(name: string): void {

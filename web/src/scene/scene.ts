@@ -13,7 +13,7 @@ import {
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Client } from "../client";
 import { fixed } from "../format";
-import { PATH_POINTS } from "../names";
+import { PATH_POINTS, PULL } from "../names";
 import type { SceneNode } from "../state/scene";
 import { token } from "../theme";
 import { h } from "../ui/dom";
@@ -24,7 +24,9 @@ import { Labels } from "./labels";
 import { pick } from "./pick";
 
 /** Around the path: the plate is larger than its own middle. */
-const ROOM_M = 0.04;
+const ROOM_M = 0.055;
+/** A plate that hardly moves is still seen with its surroundings. */
+const NEAREST_M = 0.14;
 
 interface Shown {
   holder: Group;
@@ -161,6 +163,11 @@ export class SceneView {
       shown.holder.quaternion.set(qx, qy, qz, qw);
     }
     shown.holder.visible = node.visible;
+    const puller = node.name.startsWith(PULL) ? node.name.slice(PULL.length) : undefined;
+    const letter = this.#client.meta?.experts.find(({ name }) => name === puller)?.letter;
+    // Colours alone would not tell the arrows apart.
+    if (letter !== undefined && lengthOf(node) > SEEN_M) this.#labels.set(node.name, letter, tipOf(node, shown.holder));
+    else if (puller !== undefined) this.#labels.remove(node.name);
     if (node.type === "LabelMessage") this.#labels.set(node.name, String(node.props["text"] ?? ""), shown.holder);
   }
 
@@ -202,7 +209,8 @@ export class SceneView {
     if (path.length > 3) {
       const box = new Box3().setFromArray(path);
       box.getCenter(to);
-      away.setLength((box.getSize(new Vector3()).length() / 2 + ROOM_M) / Math.tan(this.#narrowest() / 2));
+      const radius = Math.max(box.getSize(new Vector3()).length() / 2 + ROOM_M, NEAREST_M);
+      away.setLength(radius / Math.tan(this.#narrowest() / 2));
     }
     this.#camera.position.copy(to).add(away);
     this.#controls?.target.copy(to);
@@ -255,6 +263,24 @@ export class SceneView {
     });
     document.addEventListener("visibilitychange", () => this.invalidate());
   }
+}
+
+/** A place at the end of a node's last arrow, which moves with the node. */
+function tipOf(node: SceneNode, holder: Group): Object3D {
+  const [x = 0, y = 0, z = 0] = floats(node.props["points"]).slice(-3);
+  const tip = holder.getObjectByName(TIP) ?? Object.assign(new Group(), { name: TIP });
+  tip.position.set(x, y, z);
+  return holder.add(tip) && tip;
+}
+
+const TIP = "tip";
+
+/** Arrows that are shorter are none: the expert is off. */
+const SEEN_M = 0.002;
+
+function lengthOf(node: SceneNode): number {
+  const [x = 0, y = 0, z = 0, u = 0, v = 0, w = 0] = floats(node.props["points"]);
+  return Math.hypot(u - x, v - y, w - z);
 }
 
 const LEGEND: [string, string][] = [

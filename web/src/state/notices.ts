@@ -8,6 +8,8 @@ export interface Notice {
   body: string;
   /** Something is under way. */
   loading: boolean;
+  /** Whether it is red: something went wrong. */
+  error: boolean;
   /** When it goes by itself, in seconds; nothing where it stays. */
   autoCloseSecs: number | undefined;
 }
@@ -28,6 +30,7 @@ export function applyNotice(notices: Map<string, Notice>, message: Message): boo
     title: String(props["title"] ?? ""),
     body: String(props["body"] ?? ""),
     loading: props["loading"] === true,
+    error: props["color"] === "red",
     autoCloseSecs: typeof secs === "number" && secs > 0 ? secs : undefined,
   });
   return true;

@@ -96,6 +96,7 @@ class Row {
   readonly #position = h("span", { class: "number part", ...explained("sharePosition") });
   readonly #bar = h("span", { class: "fill" });
   readonly #state = h("span", { class: "state" });
+  readonly #damaged = h("span", { class: "damaged", role: "img", ...explained("damage") }, "~");
   readonly #readings = h("p", { class: "readings" });
 
   constructor(client: Client, expert: ExpertMeta) {
@@ -108,7 +109,7 @@ class Row {
     this.element = h(
       "li",
       { class: "expert", "data-expert": expert.name },
-      h("div", { class: "head" }, key, chip, toggle.element, this.#mean, this.#position),
+      h("div", { class: "head" }, key, chip, toggle.element, this.#damaged, this.#mean, this.#position),
       h("div", { class: "bar", ...explained("share") }, this.#bar),
       h("div", { class: "tail" }, alpha.element, this.#state, this.#readings),
     );
@@ -117,11 +118,13 @@ class Row {
 
   update(expert: ExpertMeta, meta: Meta): void {
     this.#controls.forEach((each) => each.update());
-    setText(this.#mean, percent(expert.share_mean));
+    setText(this.#mean, percent(expert.share.length === 0 ? null : expert.share_mean));
     setText(this.#position, percent(expert.share_position));
     this.#bar.style.width = `${(expert.share_mean ?? 0) * 100}%`;
     const damaged = meta.corruptions.some(({ modality }) => sees(expert.name, modality));
-    setText(this.#state, expert.alpha === 0 ? "off, out of the product" : damaged ? "~ damaged" : "");
+    setText(this.#state, expert.alpha === 0 ? "off, out of the product" : "");
+    setHidden(this.#damaged, !damaged);
+    this.#damaged.setAttribute("aria-label", `the input of ${expert.name} is damaged`);
     this.element.classList.toggle("off", expert.alpha === 0);
     this.#readings.replaceChildren(...readings(expert));
     setHidden(this.#readings, expert.alpha === 0);

@@ -104,7 +104,7 @@ function noteOf(name: FrameName, meta: Meta, label: string): string {
     case "belief":
       return withUnit(meta.psnr_db?.belief, 1, "dB").replace("–", "");
     case "prediction":
-      return [ahead(meta.step, meta.start), withUnit(meta.psnr_db?.prediction, 1, "dB").replace("–", "")]
+      return [ahead(meta.step, meta.start, meta.horizon), withUnit(meta.psnr_db?.prediction, 1, "dB").replace("–", "")]
         .join(" ")
         .trim();
     case "error":

@@ -16,6 +16,7 @@ export class Header {
   readonly element: HTMLElement;
   readonly #client: Client;
   readonly #controls: Control[];
+  readonly #turns: HTMLButtonElement[];
   readonly #connection = h("span", { class: "connection", role: "status" });
   readonly #notes = h("span", { class: "notes" });
 
@@ -30,17 +31,12 @@ export class Header {
       return element;
     };
     const turn = (sign: IconName, hint: string, key: string) => button(sign, hint, () => client.key(key));
+    this.#turns = [turn("previous", "previous episode  [", "["), turn("next", "next episode  ]", "]")];
     this.element = h(
       "header",
       { class: "top" },
       h("h1", {}, "poescope"),
-      h(
-        "div",
-        { class: "group" },
-        episode.element,
-        turn("previous", "previous episode  [", "["),
-        turn("next", "next episode  ]", "]"),
-      ),
+      h("div", { class: "group" }, episode.element, ...this.#turns),
       h("div", { class: "group" }, model.element),
       this.#notes,
       this.#connection,
@@ -58,6 +54,7 @@ export class Header {
   update(status: string, open: boolean): void {
     this.#controls.forEach((each) => each.update());
     const { meta } = this.#client;
+    this.#turns.forEach((each) => (each.disabled = meta?.read_only === true));
     const busy = meta?.busy === true;
     setText(this.#connection, open ? (busy ? "◌ computing" : "● connected") : `○ ${status}`);
     this.#connection.dataset["open"] = String(open);

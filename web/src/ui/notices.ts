@@ -61,7 +61,9 @@ export class Notices {
 
   /** Called when notifications changed, not with every step. */
   updateNotices(): void {
-    const notices = [...this.#client.store.notices.values()];
+    // What the session says stands in the line; only errors come as a notification as well.
+    const all = [...this.#client.store.notices.values()];
+    const notices = all.filter(({ uuid, error }) => error || !uuid.startsWith(names.SAID));
     const elements = this.#keyed.update(
       notices,
       ({ uuid }) => uuid,
@@ -73,6 +75,7 @@ export class Notices {
       setText(element.children[0] as Element, notice.title);
       setText(element.children[1] as Element, notice.body);
       element.classList.toggle("loading", notice.loading);
+      element.classList.toggle("error", notice.error);
       this.#expire(notice);
     });
   }

@@ -18,7 +18,7 @@ describe("numbers", () => {
   });
 
   it("count steps ahead of the rollout's start", () => {
-    expect([ahead(8, 3), ahead(3, 3), ahead(0, 3)]).toEqual(["+5", "", ""]);
+    expect([ahead(8, 3, 11), ahead(3, 3, 11), ahead(0, 3, 11), ahead(15, 3, 11)]).toEqual(["+5", "", "", ""]);
     expect(percent(0.216)).toBe("22 %");
     expect(withUnit(31.24, 1, "dB")).toBe("31.2 dB");
   });
