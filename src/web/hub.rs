@@ -24,6 +24,9 @@ use crate::session::wants::Wants;
 /// No more often than so: a browser paints no faster.
 const PERIOD: Duration = Duration::from_millis(16);
 
+/// But so soon after somebody has asked for something.
+const SOON: Duration = Duration::from_millis(6);
+
 /// What all viewers share.
 pub struct Hub {
     attached: Attached,
@@ -31,6 +34,8 @@ pub struct Hub {
     pub news: Arc<Notify>,
     read_only: bool,
     spread: AtomicBool,
+    /// Somebody has asked for something, and nobody has been told since.
+    asked: AtomicBool,
     started: Instant,
     state: Mutex<State>,
 }
@@ -54,6 +59,7 @@ impl Hub {
             news,
             read_only,
             spread: AtomicBool::new(false),
+            asked: AtomicBool::new(false),
             started: Instant::now(),
             state: Mutex::default(),
         };
@@ -69,24 +75,29 @@ impl Hub {
     /// Tells everybody what is new, whenever there is something, for ever.
     pub async fn run(&self) {
         let mut last = Instant::now();
-        let mut holding = false;
+        let (mut waiting, mut holding) = (false, false);
         loop {
+            let asked = self.asked.load(Ordering::Relaxed);
+            let due = last + if asked { SOON } else { PERIOD };
             tokio::select! {
-                () = self.news.notified() => {}
+                () = self.news.notified() => {
+                    waiting = true;
+                    continue;
+                }
+                () = sleep_until(due.into()), if waiting => {}
                 () = sleep(HOLD / 2), if holding => {}
             }
-            sleep_until((last + PERIOD).into()).await;
-            last = Instant::now();
-            self.refresh();
-            let state = self.lock();
-            holding = state.viewers.iter().fold(false, |holding, viewer| {
-                viewer.let_go(&state.stage, last) | holding
-            });
+            waiting = false;
+            if self.refresh() {
+                last = Instant::now();
+                self.asked.store(false, Ordering::Relaxed);
+            }
+            holding = self.let_go();
         }
     }
 
-    /// Takes the newest snapshot in.
-    fn refresh(&self) {
+    /// Takes the newest snapshot in; whether there was anything to tell.
+    fn refresh(&self) -> bool {
         let snapshot = self.attached.snapshot();
         let shown = Shown {
             read_only: self.read_only,
@@ -98,16 +109,26 @@ impl Hub {
             .as_ref()
             .is_some_and(|(before, how)| Arc::ptr_eq(before, &snapshot) && *how == shown);
         if same {
-            return;
+            return false;
         }
         let pieces = state.composer.compose(&snapshot, shown);
         let mut moment = state.stage.show(pieces);
         moment.changes.extend(state.notify(&snapshot));
+        let any = !moment.changes.is_empty();
         let moment = Arc::new(moment);
         for viewer in &state.viewers {
             viewer.tell(&moment, &snapshot);
         }
         state.shown = Some((snapshot, shown));
+        any
+    }
+
+    /// Lets viewers go of what they have not used for a while; whether anything is held still.
+    fn let_go(&self) -> bool {
+        let (state, now) = (self.lock(), Instant::now());
+        let stage = &state.stage;
+        let viewers = state.viewers.iter();
+        viewers.fold(false, |holding, viewer| viewer.let_go(stage, now) | holding)
     }
 
     /// Takes a viewer in; none where there are so many already.
@@ -179,6 +200,7 @@ impl Hub {
             Asked::Nothing => return,
         };
         if !self.read_only {
+            self.asked.store(true, Ordering::Relaxed);
             for command in commands {
                 // Where more waits than the session takes in, the newest is dropped; the control is put right later.
                 self.attached.apply(command);

@@ -20,7 +20,7 @@ mod rollout;
 mod table;
 
 use super::piece::Piece;
-use super::protocol::panel::PanelLabel;
+use super::protocol::panel::{Edge, MAIN, PanelLabel, PanelPosition};
 use super::protocol::theme::Theme;
 use crate::session::snapshot::Snapshot;
 pub use meta::face_name;
@@ -38,9 +38,19 @@ pub struct Shown {
 }
 
 /// Makes scenes, and keeps what is dear to make.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Composer {
     pictures: Pictures,
+    run: String,
+}
+
+impl Default for Composer {
+    fn default() -> Self {
+        Self {
+            pictures: Pictures::default(),
+            run: format!("{:08x}", rand::random::<u32>()),
+        }
+    }
 }
 
 impl Composer {
@@ -50,6 +60,12 @@ impl Composer {
         panel.pieces.push(Piece::of(&Theme::default()));
         panel.pieces.push(Piece::of(&PanelLabel {
             label: Some("poescope".to_owned()),
+        }));
+        panel.pieces.push(Piece::of(&PanelPosition {
+            uuid: MAIN.to_owned(),
+            position: Edge { edge: "right" },
+            counter: 1,
+            run_id: self.run.clone(),
         }));
         head::add(&mut panel, snapshot);
         experts::add(&mut panel, snapshot);
