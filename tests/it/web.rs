@@ -3,6 +3,7 @@
 mod client;
 mod doors;
 mod hostile;
+mod page;
 mod program;
 
 use std::time::{Duration, Instant};

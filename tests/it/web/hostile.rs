@@ -1,5 +1,7 @@
 //! What nobody should say closes the connection that said it, with a reason, and touches nobody else.
 
+use std::time::Duration;
+
 use serde_json::json;
 use tokio_tungstenite::tungstenite::Message;
 
@@ -65,11 +67,17 @@ fn a_flood_ends_at_its_source() {
             bad.set("poescope-step", &json!(1 + round % 16)).await;
         }
         assert_eq!(bad.end().await.map(|(code, _)| code), Some(1008));
-        good.set("poescope-step", &json!(9)).await;
-        good.until("the step", |view| {
-            view.value("poescope-step") == json!(9.0) || view.meta()["step"] == 8
-        })
-        .await;
+        // What the flood had asked for before it was stopped may still be done after the first of these.
+        let mut heard = false;
+        for _ in 0..20 {
+            good.set("poescope-step", &json!(9)).await;
+            good.wait(Duration::from_millis(500)).await;
+            heard = good.value("poescope-step") == json!(9.0) || good.meta()["step"] == 8;
+            if heard {
+                break;
+            }
+        }
+        assert!(heard, "the others are served on");
     });
 }
 

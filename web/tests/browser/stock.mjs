@@ -78,7 +78,9 @@ async function open() {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   page.errors = [];
   page.on("console", (message) => {
-    if (message.type() === "error" && !BENIGN.test(message.text())) page.errors.push(message.text());
+    // It lets go of a picture's address when a newer one comes, also where the older is still being loaded.
+    const replaced = message.location().url.startsWith("blob:");
+    if (message.type() === "error" && !replaced && !BENIGN.test(message.text())) page.errors.push(message.text());
   });
   page.on("pageerror", (error) => page.errors.push(String(error)));
   await page.goto(url);
