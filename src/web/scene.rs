@@ -22,7 +22,7 @@ mod table;
 use std::time::Duration;
 
 use super::piece::Piece;
-use super::protocol::panel::{Edge, MAIN, PanelLabel, PanelPosition};
+use super::protocol::panel::PanelLabel;
 use super::protocol::theme::Theme;
 use crate::session::snapshot::Snapshot;
 pub use meta::face_name;
@@ -40,21 +40,10 @@ pub struct Shown {
 }
 
 /// Makes scenes, and keeps what is dear to make.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Composer {
     pictures: Pictures,
     pace: Pace,
-    run: String,
-}
-
-impl Default for Composer {
-    fn default() -> Self {
-        Self {
-            pictures: Pictures::default(),
-            pace: Pace::default(),
-            run: format!("{:08x}", rand::random::<u32>()),
-        }
-    }
 }
 
 impl Composer {
@@ -78,12 +67,6 @@ impl Composer {
         panel.pieces.push(Piece::of(&Theme::default()));
         panel.pieces.push(Piece::of(&PanelLabel {
             label: Some("poescope".to_owned()),
-        }));
-        panel.pieces.push(Piece::of(&PanelPosition {
-            uuid: MAIN.to_owned(),
-            position: Edge { edge: "right" },
-            counter: 1,
-            run_id: self.run.clone(),
         }));
         head::add(&mut panel, snapshot);
         experts::add(&mut panel, snapshot);

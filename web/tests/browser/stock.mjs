@@ -78,7 +78,10 @@ async function open() {
   const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });
   page.errors = [];
   page.on("console", (message) => {
-    if (message.type() === "error" && !BENIGN.test(message.text())) page.errors.push(message.text());
+    // A picture that was replaced before it was loaded: that page gives up its address at once.
+    const replaced = message.location().url.startsWith("blob:") && message.text().includes("ERR_FILE_NOT_FOUND");
+    if (message.type() === "error" && !replaced && !BENIGN.test(message.text()))
+      page.errors.push(`${message.text()} ${message.location().url}`);
   });
   page.on("pageerror", (error) => page.errors.push(String(error)));
   await page.goto(url);
