@@ -27,6 +27,9 @@ const PERIOD: Duration = Duration::from_millis(16);
 /// But so soon after somebody has asked for something.
 const SOON: Duration = Duration::from_millis(6);
 
+/// One picture no more often than so: viser's client complains of one that is replaced before it was loaded.
+const PICTURES: Duration = Duration::from_millis(30);
+
 /// What all viewers share.
 pub struct Hub {
     attached: Attached,
@@ -40,7 +43,17 @@ pub struct Hub {
     state: Mutex<State>,
 }
 
-#[derive(Default)]
+/// What came of a snapshot.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Told {
+    /// It is nothing new.
+    Nothing,
+    /// It was told.
+    All,
+    /// Some of it is held back for a moment.
+    NotYet,
+}
+
 struct State {
     stage: Stage,
     composer: Composer,
@@ -61,7 +74,14 @@ impl Hub {
             spread: AtomicBool::new(false),
             asked: AtomicBool::new(false),
             started: Instant::now(),
-            state: Mutex::default(),
+            state: Mutex::new(State {
+                stage: Stage::default(),
+                composer: Composer::paced(PICTURES),
+                viewers: Vec::new(),
+                shown: None,
+                note: None,
+                notes: 0,
+            }),
         };
         hub.refresh();
         hub
@@ -82,13 +102,16 @@ impl Hub {
             tokio::select! {
                 () = self.news.notified() => {
                     waiting = true;
+                    // The session has looked: there is room again for what waits.
+                    self.hand_on();
                     continue;
                 }
                 () = sleep_until(due.into()), if waiting => {}
                 () = sleep(HOLD / 2), if holding => {}
             }
-            waiting = false;
-            if self.refresh() {
+            let told = self.refresh();
+            waiting = told == Told::NotYet;
+            if told != Told::Nothing {
                 last = Instant::now();
                 self.asked.store(false, Ordering::Relaxed);
             }
@@ -96,8 +119,8 @@ impl Hub {
         }
     }
 
-    /// Takes the newest snapshot in; whether there was anything to tell.
-    fn refresh(&self) -> bool {
+    /// Takes the newest snapshot in; what there was to tell.
+    fn refresh(&self) -> Told {
         let snapshot = self.attached.snapshot();
         let shown = Shown {
             read_only: self.read_only,
@@ -109,7 +132,7 @@ impl Hub {
             .as_ref()
             .is_some_and(|(before, how)| Arc::ptr_eq(before, &snapshot) && *how == shown);
         if same {
-            return false;
+            return Told::Nothing;
         }
         let pieces = state.composer.compose(&snapshot, shown);
         let mut moment = state.stage.show(pieces);
@@ -119,8 +142,12 @@ impl Hub {
         for viewer in &state.viewers {
             viewer.tell(&moment, &snapshot);
         }
+        if state.composer.is_late() {
+            state.shown = None;
+            return Told::NotYet;
+        }
         state.shown = Some((snapshot, shown));
-        any
+        if any { Told::All } else { Told::Nothing }
     }
 
     /// Lets viewers go of what they have not used for a while; whether anything is held still.
@@ -201,9 +228,18 @@ impl Hub {
         };
         if !self.read_only {
             self.asked.store(true, Ordering::Relaxed);
-            for command in commands {
-                // Where more waits than the session takes in, the newest is dropped; the control is put right later.
-                self.attached.apply(command);
+            viewer.ask(commands);
+            self.hand_on();
+        }
+    }
+
+    /// Hands what viewers ask for to the session, one a viewer in turn: whoever asks for too much waits for itself.
+    fn hand_on(&self) {
+        let viewers = self.lock().viewers.clone();
+        let mut any = true;
+        while std::mem::take(&mut any) {
+            for viewer in &viewers {
+                any |= viewer.hand_on(|command| self.attached.apply(command));
             }
         }
     }

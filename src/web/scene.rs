@@ -19,14 +19,16 @@ mod png;
 mod rollout;
 mod table;
 
+use std::time::Duration;
+
 use super::piece::Piece;
-use super::protocol::panel::{Edge, MAIN, PanelLabel, PanelPosition};
+use super::protocol::panel::PanelLabel;
 use super::protocol::theme::Theme;
 use crate::session::snapshot::Snapshot;
 pub use meta::face_name;
 use nodes::Nodes;
 use panel::Panel;
-use pictures::Pictures;
+use pictures::{Pace, Pictures};
 
 /// What is shown besides the snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -38,22 +40,27 @@ pub struct Shown {
 }
 
 /// Makes scenes, and keeps what is dear to make.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Composer {
     pictures: Pictures,
-    run: String,
-}
-
-impl Default for Composer {
-    fn default() -> Self {
-        Self {
-            pictures: Pictures::default(),
-            run: format!("{:08x}", rand::random::<u32>()),
-        }
-    }
+    pace: Pace,
 }
 
 impl Composer {
+    /// One that shows another file in the place of a picture no more often than so.
+    pub fn paced(gap: Duration) -> Self {
+        let pace = Pace::new(gap);
+        Self {
+            pace,
+            ..Self::default()
+        }
+    }
+
+    /// Whether a picture of the last snapshot was held back.
+    pub fn is_late(&self) -> bool {
+        self.pace.late
+    }
+
     /// All pieces of a snapshot, in the order in which a client is to make them.
     pub fn compose(&mut self, snapshot: &Snapshot, shown: Shown) -> Vec<Piece> {
         let mut panel = Panel::new(shown.read_only);
@@ -61,15 +68,10 @@ impl Composer {
         panel.pieces.push(Piece::of(&PanelLabel {
             label: Some("poescope".to_owned()),
         }));
-        panel.pieces.push(Piece::of(&PanelPosition {
-            uuid: MAIN.to_owned(),
-            position: Edge { edge: "right" },
-            counter: 1,
-            run_id: self.run.clone(),
-        }));
         head::add(&mut panel, snapshot);
         experts::add(&mut panel, snapshot);
-        frames::add(&mut panel, snapshot, &mut self.pictures);
+        self.pace.late = false;
+        frames::add(&mut panel, snapshot, &mut self.pictures, &mut self.pace);
         charts::add(&mut panel, snapshot);
         rollout::add(&mut panel, snapshot, shown.spread);
         damage::add(&mut panel, snapshot);

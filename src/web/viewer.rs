@@ -1,6 +1,6 @@
 //! One connected viewer: what waits for it, what it set last, its keys.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -15,12 +15,16 @@ use super::protocol::replay::ReplayDone;
 use super::protocol::{Key, write};
 use super::stage::Stage;
 use super::talk::Talk;
+use crate::session::command::Command;
 use crate::session::snapshot::Snapshot;
 
 /// So long after its last use a control is its user's: what comes back meanwhile is late and would make it jump.
 pub const HOLD: Duration = Duration::from_millis(250);
 /// Controls that one viewer may hold at once; there are fewer.
 const HELD: usize = 256;
+
+/// Commands of one viewer that may wait while the session is busy with others'.
+const ASKED: usize = 64;
 
 /// One viewer.
 #[derive(Debug, Default)]
@@ -34,6 +38,7 @@ pub struct Viewer {
 struct State {
     outbox: Outbox,
     held: BTreeMap<String, Held>,
+    asked: VecDeque<Command>,
     talk: Talk,
     told: String,
     close: Option<Farewell>,
@@ -88,6 +93,25 @@ impl Viewer {
         }
         drop(state);
         self.wake.notify_one();
+    }
+
+    /// It asks for these; what is too much is dropped.
+    pub fn ask(&self, commands: Vec<Command>) {
+        let mut state = self.lock();
+        if state.close.is_none() {
+            let room = ASKED.saturating_sub(state.asked.len());
+            state.asked.extend(commands.into_iter().take(room));
+        }
+    }
+
+    /// Hands on the next thing it asks for; false where there is none, or it was not taken.
+    pub fn hand_on(&self, take: impl FnOnce(Command) -> bool) -> bool {
+        let asked = &mut self.lock().asked;
+        let taken = asked.front().is_some_and(|command| take(command.clone()));
+        if taken {
+            asked.pop_front();
+        }
+        taken
     }
 
     /// It has set a control to a value.
@@ -145,14 +169,17 @@ impl Viewer {
         heard
     }
 
-    /// Ends its connection; the first reason counts.
+    /// Ends its connection, and forgets what it asks for; the first reason counts.
     pub fn close(&self, code: u16, reason: &str) {
         let mut end = reason.len().min(120);
         while !reason.is_char_boundary(end) {
             end -= 1;
         }
         let reason = reason[..end].to_owned();
-        self.lock().close.get_or_insert(Farewell { code, reason });
+        let mut state = self.lock();
+        state.close.get_or_insert(Farewell { code, reason });
+        state.asked.clear();
+        drop(state);
         self.wake.notify_one();
     }
 

@@ -1,38 +1,30 @@
 //! The images at the cursor.
 
 use super::panel::Panel;
-use super::pictures::Pictures;
+use super::pictures::{Pace, Pictures};
 use super::png::ERROR_RANGE;
 use crate::session::snapshot::{ErrorOf, Snapshot};
 
 /// Adds the folder.
-pub fn add(panel: &mut Panel, snapshot: &Snapshot, pictures: &mut Pictures) {
+pub fn add(panel: &mut Panel, snapshot: &Snapshot, pictures: &mut Pictures, pace: &mut Pace) {
     let frames = &snapshot.frames;
     panel.folder("frames", "Frames", true);
-    panel.image("frame-truth", "truth", pictures.grey(frames.truth.as_ref()));
-    panel.image(
-        "frame-input",
-        "input (damaged)",
-        pictures.grey(frames.input.as_ref()),
-    );
-    panel.image(
-        "frame-belief",
-        "belief",
-        pictures.grey(frames.belief.as_ref()),
-    );
-    panel.image(
-        "frame-prediction",
-        "prediction",
-        pictures.grey(frames.prediction.as_ref()),
-    );
+    let greys = [
+        ("frame-truth", "truth", &frames.truth),
+        ("frame-input", "input (damaged)", &frames.input),
+        ("frame-belief", "belief", &frames.belief),
+        ("frame-prediction", "prediction", &frames.prediction),
+    ];
+    for (name, label, frame) in greys {
+        let file = pace.hold(name, pictures.grey(frame.as_ref()));
+        panel.image(name, label, file);
+    }
     let of = match frames.error_of {
         ErrorOf::Belief => "belief",
         ErrorOf::Prediction => "prediction",
     };
     let label = format!("error of {of}: blue −{ERROR_RANGE}, orange +{ERROR_RANGE}");
-    panel.image(
-        "frame-error",
-        &label,
-        pictures.signed(frames.error.as_ref()),
-    );
+    let name = "frame-error";
+    let file = pace.hold(name, pictures.signed(frames.error.as_ref()));
+    panel.image(name, &label, file);
 }
