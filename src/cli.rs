@@ -11,6 +11,9 @@ use crate::episode::Split;
 use crate::measure::failure::Order;
 use crate::model::config::Preset;
 
+/// Where a Rerun viewer listens unless it was told otherwise.
+const RERUN_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
+
 /// Look inside a product-of-experts fusion.
 ///
 /// Without a command, opens the sample episodes and the trained model that ship with it.
@@ -94,6 +97,15 @@ pub struct ViewArgs {
     /// With --serve: browsers may only look
     #[arg(long, requires = "serve")]
     pub read_only: bool,
+    /// Stream what is shown to a running Rerun viewer, at this address [default: the viewer's own]
+    #[arg(
+        long,
+        value_name = "URL",
+        num_args = 0..=1,
+        default_missing_value = RERUN_VIEWER,
+        conflicts_with_all = ["print", "plain", "json", "failures"]
+    )]
+    pub rerun: Option<String>,
     /// How many colours to use: `auto` goes by TERM, COLORTERM and NO_COLOR
     #[arg(long, value_enum, default_value_t)]
     pub color: Colors,
@@ -123,6 +135,9 @@ pub struct ServeArgs {
     /// Browsers may only look
     #[arg(long)]
     pub read_only: bool,
+    /// Stream what is shown to a running Rerun viewer, at this address [default: the viewer's own]
+    #[arg(long, value_name = "URL", num_args = 0..=1, default_missing_value = RERUN_VIEWER)]
+    pub rerun: Option<String>,
     /// Serve the page of this folder instead of the built-in one
     #[arg(long, value_name = "DIR")]
     pub web_root: Option<PathBuf>,

@@ -7,6 +7,8 @@ pub mod open;
 pub mod sample;
 pub mod serve;
 pub mod simulate;
+#[cfg(feature = "rerun")]
+pub mod stream;
 pub mod train;
 pub mod view;
 

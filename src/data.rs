@@ -37,5 +37,5 @@ pub use dataset::Dataset;
 pub use error::DataError;
 pub use report::{FileReport, LeftOut, TopicReport};
 pub use store::{Episodes, Store};
-pub use topics::{Role, Topics};
+pub use topics::{NOTES, Role, Topics};
 pub use write::DatasetWriter;

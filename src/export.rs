@@ -13,6 +13,8 @@ pub mod json;
 pub mod mcap;
 pub mod output;
 pub mod png;
+#[cfg(feature = "rerun")]
+pub mod rerun;
 pub mod step;
 
 mod facts;

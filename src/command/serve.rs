@@ -11,7 +11,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use super::say;
-use super::view::{cache, follow, open};
+use super::view::{self, Opening, cache, follow};
 use crate::cli::{ServeArgs, ViewArgs};
 use crate::session::Session;
 use crate::session::command::Command;
@@ -39,7 +39,11 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     // Before anything is served: a signal must never find nobody listening.
     let signals = Signals::new([SIGINT, SIGTERM, SIGHUP]).context("listening for signals")?;
     let address = SocketAddr::new(args.host, args.port);
-    let (mut session, watched) = open(&ViewArgs {
+    let Opening {
+        mut session,
+        watched,
+        opened,
+    } = view::open(&ViewArgs {
         data: args.data,
         model: args.model,
         mapping: args.mapping,
@@ -57,6 +61,7 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
         assets,
     };
     let server = Server::start(&mut session, options).with_context(|| cannot(address))?;
+    let _stream = view::stream(&mut session, &opened, args.rerun.as_deref())?;
     let (sender, events) = sync_channel(QUEUE);
     let waker = sender.clone();
     // A full queue needs no further wake: the session is about to look anyway.

@@ -4,6 +4,7 @@ pub(super) mod cache;
 mod failures;
 pub(super) mod follow;
 mod report;
+mod take_along;
 
 use std::io::{self, IsTerminal};
 use std::sync::Arc;
@@ -52,7 +53,11 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         depth: depth(args.color, in_terminal),
         ..Face::default()
     };
-    let (session, watched) = open(&args)?;
+    let Opening {
+        session,
+        watched,
+        opened,
+    } = open(&args)?;
     let mut app = App::new(session, face, Size::new(size.0, size.1));
     if let Some(cache) = cache::Folder::of_user() {
         app.session.keep_scores_in(Arc::new(cache));
@@ -91,6 +96,9 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         .serve
         .map(|address| serve::attach(&mut app.session, address, args.read_only));
     let _server = server.transpose()?;
+    let _stream = stream(&mut app.session, &opened, args.rerun.as_deref())?;
+    let folder = std::env::current_dir().unwrap_or_default();
+    app.take_along = Some(take_along::taker(&mut app.session, &opened, folder));
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
     let _follower = follower.context("starting a thread to watch the models")?;
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
@@ -102,16 +110,51 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Opens what the arguments name. The folders that training runs write to are to be watched.
-pub(super) fn open(args: &ViewArgs) -> anyhow::Result<(Session, Vec<Watched>)> {
+/// A session that was opened.
+pub(super) struct Opening {
+    pub session: Session,
+    /// The folders that training runs write to, to be watched.
+    pub watched: Vec<Watched>,
+    /// What it is of.
+    pub opened: Opened,
+}
+
+/// Opens what the arguments name.
+pub(super) fn open(args: &ViewArgs) -> anyhow::Result<Opening> {
     let folders = open::folders(&args.model)?;
     // Before the models are read: what is written meanwhile is seen.
     let watched = folders.iter().enumerate();
     let watched = watched.filter_map(|(model, folder)| Watched::new(model, folder));
     let watched = watched.collect();
-    let Opened { dataset, models } =
-        open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
-    Ok((Session::new(dataset, models), watched))
+    let opened = open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
+    let session = Session::new(Arc::clone(&opened.dataset) as _, opened.models.clone());
+    Ok(Opening {
+        session,
+        watched,
+        opened,
+    })
+}
+
+/// Streams to Rerun where that was asked for, for as long as what is returned lives.
+#[cfg(feature = "rerun")]
+pub(super) fn stream(
+    session: &mut Session,
+    opened: &Opened,
+    url: Option<&str>,
+) -> anyhow::Result<Option<super::stream::Streaming>> {
+    url.map(|url| super::stream::start(session, opened, url))
+        .transpose()
+}
+
+/// This build has no Rerun in it.
+#[cfg(not(feature = "rerun"))]
+pub(super) fn stream(_: &mut Session, _: &Opened, url: Option<&str>) -> anyhow::Result<()> {
+    if url.is_some() {
+        bail!(
+            "--rerun: this build has no Rerun in it; build it with the feature `rerun`, which is on by default"
+        );
+    }
+    Ok(())
 }
 
 /// Presses the keys one after the other, each once what the one before it asked for has been computed.

@@ -7,7 +7,7 @@ use super::index::{Channel, Index};
 use super::message_type::MessageType;
 use super::report::LeftOut;
 use super::schema;
-use super::topics::{Role, Topics};
+use super::topics::{NOTES, Role, Topics};
 
 /// The channels of a file, sorted out.
 pub(super) struct Streams {
@@ -23,7 +23,12 @@ pub(super) fn find(index: &Index, topics: &Topics) -> Streams {
         left_out: Vec::new(),
         notes: Vec::new(),
     };
+    let mut noted = 0;
     for (&id, channel) in &index.channels {
+        if topics.role(&channel.topic).is_none() && channel.topic.starts_with(NOTES) {
+            noted += 1;
+            continue;
+        }
         let read = match topics.role(&channel.topic) {
             Some(role) => stream(index, channel, role, &mut found.notes),
             None => Err(
@@ -39,6 +44,11 @@ pub(super) fn find(index: &Index, topics: &Topics) -> Streams {
                 why,
             }),
         }
+    }
+    if noted > 0 {
+        found.notes.push(format!(
+            "{noted} channels under {NOTES} are what models made of it, from an export; they are not read"
+        ));
     }
     found
 }

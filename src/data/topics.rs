@@ -9,6 +9,9 @@ use serde::{Deserialize, Serialize};
 use super::error::DataError;
 use super::message_type::MessageType;
 
+/// Topics that begin so hold what models made of a recording: an export writes them, and nothing reads them as data.
+pub const NOTES: &str = "/poescope/";
+
 /// What a topic is to an episode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -7,12 +7,10 @@ use super::color;
 use super::output::Output;
 use super::step::{READINGS, Step, readings_of};
 use super::{ExportError, Provenance, Run, Sink};
-use crate::data::{Annotated, Dataset, Note, Value};
+use crate::data::{Annotated, Dataset, NOTES, Note, Value};
 use crate::episode::Frame;
 use crate::session::snapshot::{Estimate, LatentView};
 
-/// Every topic that is written begins so; recorded ones that do are of an earlier export, and left out.
-pub const ROOT: &str = "/poescope/";
 /// Name of the metadata record that says where all of it comes from.
 pub const RECORD: &str = "poescope";
 
@@ -52,7 +50,7 @@ impl Sink for Recording {
             }
         }
         let index = first.episode_index;
-        self.file.episode(&self.dataset, index, &notes, ROOT)?;
+        self.file.episode(&self.dataset, index, &notes, NOTES)?;
         Ok(())
     }
 
@@ -68,7 +66,7 @@ impl Sink for Recording {
 fn note<'a>(step: &Step<'a>, model: &str, stamp_nanos: i64, notes: &mut Vec<Note<'a>>) {
     let mut say = |topic: &str, value: Value<'a>| {
         notes.push(Note {
-            topic: format!("{ROOT}{model}/{topic}"),
+            topic: format!("{NOTES}{model}/{topic}"),
             stamp_nanos,
             value,
         });

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::Session;
 use super::command::Command;
-use super::snapshot::Snapshot;
+use super::snapshot::{Message, Snapshot};
 use super::wants::Wants;
 use super::worker::Shared;
 
@@ -36,6 +36,8 @@ struct Line {
 #[derive(Default)]
 struct Asked {
     commands: VecDeque<Command>,
+    /// To be told to the user.
+    said: Option<Message>,
     wants: Wants,
 }
 
@@ -55,6 +57,12 @@ impl Attached {
     /// Says what this face looks at.
     pub fn want(&self, wants: Wants) {
         lock(&self.line.asked).wants = wants;
+        self.shared.wake();
+    }
+
+    /// Tells the user something, through every face.
+    pub fn say(&self, message: Message) {
+        lock(&self.line.asked).said = Some(message);
         self.shared.wake();
     }
 
@@ -92,9 +100,13 @@ impl Session {
             let mut asked = lock(&line.asked);
             wants = wants.and(asked.wants);
             let commands = std::mem::take(&mut asked.commands);
+            let said = asked.said.take();
             drop(asked);
             for command in commands {
                 self.apply(command);
+            }
+            if let Some(message) = said {
+                self.say(message);
             }
         }
         if self.wants != wants {
@@ -168,6 +180,23 @@ mod tests {
         drop(face);
         session.update(Duration::ZERO);
         assert_eq!(session.wants, Wants::default());
+    }
+
+    #[test]
+    fn what_one_face_says_every_face_tells() {
+        let mut session = session();
+        let (one, other) = (
+            session.attach(Box::new(|| {})),
+            session.attach(Box::new(|| {})),
+        );
+        let message = Message {
+            error: false,
+            text: "written".to_owned(),
+        };
+        one.say(message.clone());
+        session.update(Duration::ZERO);
+        assert_eq!(other.snapshot().message.as_ref(), Some(&message));
+        assert_eq!(session.snapshot().message, Some(message));
     }
 
     #[test]

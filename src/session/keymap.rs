@@ -56,6 +56,8 @@ pub enum FaceCommand {
     Episodes,
     /// Copy the state string.
     CopyState,
+    /// Write what is shown as a file.
+    Export,
 }
 
 /// What the keys after this one are for.

@@ -31,6 +31,9 @@ pub enum Flow {
     Quit,
 }
 
+/// Writes what is shown as a file; says what becomes of it.
+pub type TakeAlong = Box<dyn FnMut(&Snapshot) -> Message>;
+
 /// What a mouse does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pointer {
@@ -63,6 +66,8 @@ pub struct App {
     pub face: Face,
     /// A state string that is to go to the clipboard.
     pub to_copy: Option<String>,
+    /// What writes files; none where nobody would find them.
+    pub take_along: Option<TakeAlong>,
     input: Input,
     size: Size,
     dragged: Option<Drag>,
@@ -77,6 +82,7 @@ impl App {
             session,
             face,
             to_copy: None,
+            take_along: None,
             input: Input::default(),
             size,
             dragged: None,
@@ -212,6 +218,16 @@ impl App {
                     error: false,
                     text: format!("copied: {}", snapshot.state),
                 });
+            }
+            FaceCommand::Export => {
+                let message = match &mut self.take_along {
+                    Some(write) => write(snapshot),
+                    None => Message {
+                        error: true,
+                        text: "there is no file to write to from here; `poescope export --state` does it".to_owned(),
+                    },
+                };
+                self.session.say(message);
             }
         }
         Flow::Go

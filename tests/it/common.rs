@@ -26,6 +26,17 @@ pub(crate) fn answer(command: &mut Command) -> String {
     String::from_utf8(stdout).unwrap()
 }
 
+/// A Python that has the packages. The interpreter that CI names must have them; another one is asked whether it does.
+pub(crate) fn python(packages: &str) -> Option<PathBuf> {
+    if let Some(named) = std::env::var_os("POESCOPE_PYTHON") {
+        return Some(PathBuf::from(named));
+    }
+    let mut ask = Command::new("python3");
+    let asked = ask.args(["-c", &format!("import {packages}")]).output();
+    let has_them = asked.is_ok_and(|output| output.status.success());
+    has_them.then(|| PathBuf::from("python3"))
+}
+
 /// A dataset of simulated episodes.
 pub(crate) fn simulated(path: PathBuf, episodes: usize, options: &[&str]) -> PathBuf {
     let episodes = episodes.to_string();

@@ -7,7 +7,7 @@ use std::process::Command;
 use poescope::data::{Annotated, Dataset, Note, Value};
 use poescope::episode::{EpisodeSource, Layout};
 
-use crate::common::{answer, poescope};
+use crate::common::{answer, poescope, python};
 
 fn sample() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_data/episodes.mcap")
@@ -51,6 +51,7 @@ fn opened_again_it_is_the_same_dataset_with_every_message_as_it_was() {
         Dataset::open(&out).unwrap(),
     );
     assert_eq!(again.metas().len(), 2);
+    assert!(again.left_out().is_empty(), "{:?}", again.left_out());
     for (index, before) in [(0, 4), (1, 1)] {
         let [before, after] = [(&original, before), (&again, index)]
             .map(|(dataset, index)| dataset.load(index, Layout::default()).unwrap());
@@ -162,20 +163,9 @@ fn notes_are_logged_with_the_image_they_are_about_and_stay_in_their_episode() {
     }
 }
 
-/// The interpreter that CI names must have the reader; another one is asked whether it does.
-fn python() -> Option<PathBuf> {
-    if let Some(named) = std::env::var_os("POESCOPE_PYTHON") {
-        return Some(PathBuf::from(named));
-    }
-    let mut ask = Command::new("python3");
-    let asked = ask.args(["-c", "import mcap, mcap_ros2"]).output();
-    let has_it = asked.is_ok_and(|output| output.status.success());
-    has_it.then(|| PathBuf::from("python3"))
-}
-
 #[test]
 fn the_python_reader_finds_the_same_numbers() {
-    let Some(python) = python() else {
+    let Some(python) = python("mcap, mcap_ros2") else {
         eprintln!(
             "left out: no python3 with mcap and mcap-ros2-support; POESCOPE_PYTHON names one"
         );

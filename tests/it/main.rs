@@ -10,6 +10,8 @@ mod differences;
 mod errors;
 mod export;
 mod exported_mcap;
+#[cfg(feature = "rerun")]
+mod exported_rerun;
 mod failures;
 mod golden;
 mod info;

@@ -5,6 +5,7 @@ mod doors;
 mod hostile;
 mod page;
 mod program;
+mod terminal;
 
 use std::time::{Duration, Instant};
 

@@ -45,7 +45,7 @@ pub(super) fn sink(
         );
     }
     Ok(match format {
-        ExportFormat::Rrd => return rrd(out, force),
+        ExportFormat::Rrd => rrd(out, force, dataset)?,
         ExportFormat::Csv => Box::new(Tables::create(out, force)?),
         ExportFormat::Json => Box::new(Lines::create(out, force)?),
         ExportFormat::Mcap => Box::new(Recording::create(out, force, Arc::clone(dataset))?),
@@ -66,8 +66,20 @@ fn figure(args: &ExportArgs) -> Figure {
     }
 }
 
-/// A recording for the Rerun viewer, where this build has it.
-fn rrd(_out: &Path, _force: bool) -> anyhow::Result<Box<dyn Sink>> {
+/// A recording for the Rerun viewer.
+#[cfg(feature = "rerun")]
+fn rrd(out: &Path, force: bool, dataset: &Arc<Dataset>) -> anyhow::Result<Box<dyn Sink>> {
+    use crate::export::rerun::Recording;
+    Ok(Box::new(Recording::create(
+        out,
+        force,
+        Arc::clone(dataset),
+    )?))
+}
+
+/// This build has none.
+#[cfg(not(feature = "rerun"))]
+fn rrd(_: &Path, _: bool, _: &Arc<Dataset>) -> anyhow::Result<Box<dyn Sink>> {
     bail!(
         "this build has no Rerun in it; build it with the feature `rerun`, which is on by default"
     )

@@ -270,6 +270,12 @@ pub(super) static BINDINGS: &[Binding] = &[
         SCREEN,
         "copy the state string",
     ),
+    bind(
+        &["e"],
+        Face(FaceCommand::Export),
+        SCREEN,
+        "export what is shown, as a file to take along",
+    ),
     bind(&["?", "<f1>"], Face(FaceCommand::Help), SCREEN, "keys"),
     bind(&["q", "<c-c>"], Face(FaceCommand::Quit), SCREEN, "quit"),
 ];

@@ -51,6 +51,7 @@ pub fn face_name(command: FaceCommand) -> String {
         FaceCommand::Wipe => "wipe",
         FaceCommand::Episodes => "episodes",
         FaceCommand::CopyState => "copy-state",
+        FaceCommand::Export => "export",
     };
     name.to_owned()
 }

@@ -100,11 +100,10 @@ pub(crate) struct View {
 impl View {
     /// Connects, with more headers than usual.
     pub(crate) async fn try_connect(
-        server: &Running,
+        port: u16,
         path: &str,
         headers: &[(&'static str, &str)],
     ) -> Result<(Self, Response), Error> {
-        let port = server.address.port();
         let url = format!("ws://127.0.0.1:{port}{path}");
         let mut request = url.into_client_request().unwrap();
         let known = ("sec-websocket-protocol", "viser-v1.1.1");
@@ -129,12 +128,18 @@ impl View {
         server: &Running,
         headers: &[(&'static str, &str)],
     ) -> (Self, Response) {
-        Self::try_connect(server, "/", headers).await.unwrap()
+        let port = server.address.port();
+        Self::try_connect(port, "/", headers).await.unwrap()
     }
 
     /// Connects and takes in all there is.
     pub(crate) async fn come(server: &Running) -> Self {
-        let (mut view, _) = Self::connect(server, &[]).await;
+        Self::come_to(server.address.port()).await
+    }
+
+    /// The same, to a server of its own program.
+    pub(crate) async fn come_to(port: u16) -> Self {
+        let (mut view, _) = Self::try_connect(port, "/", &[]).await.unwrap();
         view.replay().await;
         view
     }

@@ -9,7 +9,7 @@ use super::client::{Running, View, run};
 
 /// The status of an attempt to connect; 101 for one that worked.
 async fn attempt(server: &Running, path: &str, headers: &[(&'static str, &str)]) -> u16 {
-    match View::try_connect(server, path, headers).await {
+    match View::try_connect(server.address.port(), path, headers).await {
         Ok((_, answer)) => answer.status().as_u16(),
         Err(Error::Http(answer)) => answer.status().as_u16(),
         Err(error) => panic!("{error}"),

@@ -63,15 +63,16 @@ fn the_keys_of_the_bench_are_in_the_table() {
         Command::CycleLoop,
     ];
     assert_eq!(commands("{ } n N o m V * L", &at), expected);
-    let face = asked(&mut Input::default(), "d b w E", &at);
+    let face = asked(&mut Input::default(), "d b w E e", &at);
     let expected = [
         FaceCommand::Difference,
         FaceCommand::Blink,
         FaceCommand::Wipe,
         FaceCommand::Episodes,
+        FaceCommand::Export,
     ];
     assert_eq!(face, expected.map(Action::Face));
-    for key in ["e", "t", "k"] {
+    for key in ["t", "k"] {
         assert_eq!(asked(&mut Input::default(), key, &at), []);
     }
     for key in [":", "<c-k>", "<c-p>"] {

@@ -1,0 +1,140 @@
+//! What each entity is, as a text in the recording, and where all of it comes from, as its properties.
+
+use std::fmt::Write as _;
+
+use ::rerun::components::Text;
+use ::rerun::{
+    AnyValues, ComponentIdentifier, RecordingStream, RecordingStreamResult, TextDocument,
+};
+
+use super::{each, recorded, space};
+use crate::export::Run;
+use crate::export::step::{READINGS, readings_of};
+use crate::session::snapshot::Snapshot;
+
+/// Where the text is.
+pub(super) const ABOUT: &str = "about";
+
+pub(super) fn log(stream: &RecordingStream, run: &Run) -> RecordingStreamResult<()> {
+    stream.log_static(ABOUT, &TextDocument::from_markdown(text(run)))?;
+    let mut facts = run.provenance.facts();
+    let own = run.models.iter().flatten().next();
+    if let Some(own) = own {
+        // The episode's own: with what a selection or a mark of its state says.
+        facts.insert("state".to_owned(), own.state.clone());
+    }
+    facts.insert("episode".to_owned(), run.episode.meta.id.clone());
+    let property = facts
+        .into_iter()
+        .fold(
+            AnyValues::default(),
+            |property, (key, value)| match ComponentIdentifier::try_new(key) {
+                Ok(key) => property.with_component::<Text>(key, [value]),
+                Err(_) => property,
+            },
+        );
+    stream.send_property("poescope", &property)
+}
+
+/// Markdown.
+fn text(run: &Run) -> String {
+    let id = &run.episode.meta.id;
+    let mut text = format!("# {id}\n\n");
+    for model in &run.provenance.models {
+        let _ = writeln!(text, "- `{}`: {}", model.name, model.source);
+    }
+    let _ = write!(
+        text,
+        "\nTimelines: `step` as on screen, from 1; `t` in s since the first image; `stamp` as recorded. Letters in \
+         brackets name diagnostics: docs/diagnostics.md of poescope.\n\n| entity | what |\n| --- | --- |\n"
+    );
+    let root = space::ROOT;
+    for (entity, what) in [
+        (recorded::FRAME, "the camera"),
+        (recorded::FORCE, "force at the tip, N"),
+        (recorded::TORQUE, "torque at the tip, N·m"),
+        (recorded::POSITION, "the tip's position, m"),
+        (recorded::VELOCITY, "the tip's velocity, m/s"),
+        (recorded::CONTROL, "the command that holds from there on"),
+    ] {
+        row(&mut text, entity, what);
+    }
+    row(
+        &mut text,
+        &format!("{root}/plate, {root}/tip, {root}/path"),
+        "as recorded, m; a plate is drawn 9 cm square whatever was pushed",
+    );
+    for (model, snapshots) in each(run) {
+        if let Some(first) = snapshots.first() {
+            of_model(&mut text, &model, first);
+        }
+    }
+    text
+}
+
+fn of_model(text: &mut String, model: &str, shown: &Snapshot) {
+    let root = space::ROOT;
+    row(
+        text,
+        &format!("{model}/frames/belief, prediction"),
+        "decoded",
+    );
+    row(
+        text,
+        &format!("{model}/frames/error"),
+        "prediction less truth, else belief less truth: blue too dark, orange too bright",
+    );
+    row(
+        text,
+        &format!("{model}/belief/mean, sigma, log_var"),
+        "the product, a series a latent dimension",
+    );
+    row(
+        text,
+        &format!("{root}/{model}/belief/ellipse_1_sigma, ellipse_95"),
+        "position read from it: 39 % and 95 % of the mass",
+    );
+    row(
+        text,
+        &format!("{root}/{model}/prediction/ellipse_1_sigma"),
+        "the head's one-step spread, which does not grow over the horizon",
+    );
+    row(
+        text,
+        &format!("{root}/{model}/prediction/plate"),
+        "where the plate is predicted; it is turned as the recorded one",
+    );
+    row(
+        text,
+        &format!("{root}/{model}/pull/EXPERT"),
+        "from where the prior has the plate, by what a sensor pulls it (D7)",
+    );
+    for reading in READINGS {
+        row(
+            text,
+            &format!("{model}/readings/{}", reading.name),
+            reading.says,
+        );
+    }
+    for view in &shown.experts {
+        let path = format!("{model}/experts/{}", view.expert.name());
+        row(
+            text,
+            &format!("{path}/mean, sigma, log_var"),
+            "as the model states it, before α",
+        );
+        row(
+            text,
+            &format!("{path}/share"),
+            "share of the belief's precision in each dimension (D1)",
+        );
+        for reading in readings_of(view.expert) {
+            row(text, &format!("{path}/{}", reading.name), reading.says);
+        }
+    }
+}
+
+fn row(text: &mut String, entity: &str, what: &str) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(text, "| {entity} | {what} |");
+}
