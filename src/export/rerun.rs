@@ -77,6 +77,10 @@ impl Sink for Recording {
             StoreSource::Other(format!("poescope {}", env!("CARGO_PKG_VERSION"))),
         );
         let sink = Box::new(self.writer.clone());
+        #[expect(
+            clippy::default_trait_access,
+            reason = "the SDK does not export the type"
+        )]
         let stream = RecordingStream::new(info, Some(named(run)), None, Default::default(), sink)
             .map_err(refused)?;
         write(&stream, run, &sensed).map_err(refused)?;

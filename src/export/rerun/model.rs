@@ -163,7 +163,7 @@ fn frames(
     let errors = cells().map(|cell| {
         let compared = cell.prediction.as_ref().or(cell.belief.as_ref());
         let error = compared.and_then(|frame| color::error(frame, &cell.truth));
-        (cell.step, error.map(|pixels| pixels.into_flattened()))
+        (cell.step, error.map(Vec::into_flattened))
     });
     pictures(ColorModel::RGB, errors.collect()).log(stream, clock, &format!("{model}/frames/error"))
 }

@@ -26,7 +26,9 @@ impl Terminal {
     fn view(options: &str) -> Self {
         let program = env!("CARGO_BIN_EXE_poescope");
         let (rows, columns) = SIZE;
-        let line = format!("stty rows {rows} cols {columns}; exec {program} view --images halfblocks {options}");
+        let line = format!(
+            "stty rows {rows} cols {columns}; exec {program} view --images halfblocks {options}"
+        );
         let mut child = Command::new("script")
             .args(["-qec", &line, "/dev/null"])
             .env("TERM", "xterm-256color")
@@ -43,7 +45,11 @@ impl Terminal {
                 parser.lock().unwrap().process(&bytes[..count]);
             }
         });
-        Self { child, keys, screen }
+        Self {
+            child,
+            keys,
+            screen,
+        }
     }
 
     fn press(&mut self, keys: &str) {
@@ -74,7 +80,11 @@ impl Drop for Terminal {
 }
 
 fn free_port() -> u16 {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+    TcpListener::bind("127.0.0.1:0")
+        .unwrap()
+        .local_addr()
+        .unwrap()
+        .port()
 }
 
 fn serving(port: u16) {
