@@ -57,7 +57,7 @@ fn ended_early(name: &str, end: impl Fn(&mut Child)) -> Vec<String> {
 #[test]
 fn after_a_kill_there_is_no_file_of_that_name_and_what_is_left_is_recognisable() {
     let names = ["a.jsonl", "a.mcap", "a.rrd"];
-    let has_rerun = |name: &&str| cfg!(feature = "rerun") || **name != "a.rrd";
+    let has_rerun = |name: &&str| cfg!(feature = "rerun") || *name != "a.rrd";
     for name in names.into_iter().filter(has_rerun) {
         let left = ended_early(name, |child| child.kill().unwrap());
         assert_eq!(left.len(), 1, "{left:?}");
