@@ -11,7 +11,7 @@ use anyhow::{Context, bail};
 use hyper::Uri;
 
 use super::open::Opened;
-use crate::export::rerun::live::Live;
+use crate::export::rerun::{self, live::Live};
 use crate::session::Session;
 use crate::session::snapshot::Message;
 
@@ -27,10 +27,8 @@ pub struct Streaming {
 
 /// Begins to stream `session`, which is of `opened`, to the viewer at `url`.
 pub fn start(session: &mut Session, opened: &Opened, url: &str) -> anyhow::Result<Streaming> {
-    if std::env::var("RERUN")
-        .is_ok_and(|value| ["0", "false", "off"].contains(&value.to_lowercase().as_str()))
-    {
-        bail!("--rerun: the environment has RERUN set to off; unset it");
+    if rerun::is_off() {
+        bail!("--rerun: {}", rerun::OFF);
     }
     look_for(url)?;
     let (wake, wakes) = sync_channel(1);

@@ -104,6 +104,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
         Ended::Quit => Ok(()),
         Ended::Signal(signal) => {
+            // What is being written is broken off, so that no half file stays.
+            app.take_along = None;
             // The terminal is itself again; now end as the signal asks, so that the caller sees it.
             signal_hook::low_level::emulate_default_handler(signal).context("ending on a signal")
         }

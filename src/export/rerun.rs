@@ -1,16 +1,16 @@
 //! Rerun recordings: one for each episode, all models in it under prefixes of their own, with a layout to open in.
 //!
 //! ```text
-//! Run ─► describe: what things are, how they look, what was recorded, where it comes from ─┐
-//!     └► steps: what every model says, as columns on `step`, `t` and `stamp` ──────────────┴─► RecordingStream
+//! Run ─► describe: what things are, how they look, where it comes from ─────────────────────┐
+//!     └► steps: what was recorded and what every model says, on `step`, `t` and `stamp` ────┴─► RecordingStream
 //!                                                         a file (Recording) or a viewer (Live) ◄───┘
 //! ```
 //! Paths: `recorded/…` is what was sensed, `MODEL/…` what a model makes of it, `table/…` the same in space.
 
 mod about;
 mod blueprint;
-mod columns;
 pub mod live;
+mod log;
 mod model;
 mod recorded;
 mod space;
@@ -22,21 +22,19 @@ use std::sync::Arc;
 
 use ::rerun::components::Timestamp;
 use ::rerun::datatypes::TimeInt;
-use ::rerun::external::re_log_types::{StoreInfo, StoreSource};
 use ::rerun::{
-    ApplicationId, RecordingInfo, RecordingStream, RecordingStreamError, RecordingStreamResult,
-    StoreId, StoreKind,
+    RecordingStream, RecordingStreamBuilder, RecordingStreamError, RecordingStreamResult,
 };
 
-use self::columns::Clock;
+use self::log::{AtSteps, Log};
 use self::writer::Writer;
 use super::output::Output;
+use super::step::Step;
 use super::{ExportError, Run, Sink};
 use crate::data::Dataset;
 use crate::episode::Recording as Sensed;
-
-/// What blueprints and recordings belong to in the viewer.
-const APPLICATION: &str = "poescope";
+use crate::modality::Expert;
+use crate::session::snapshot::Snapshot;
 
 /// The file, growing.
 pub struct Recording {
@@ -50,7 +48,12 @@ impl Recording {
     /// # Errors
     /// If it cannot be begun, or if the environment has Rerun off.
     pub fn create(out: &Path, force: bool, dataset: Arc<Dataset>) -> Result<Self, ExportError> {
-        refuse_if_off(out)?;
+        if is_off() {
+            return Err(ExportError::Format {
+                path: out.to_owned(),
+                what: OFF.to_owned(),
+            });
+        }
         let output = Output::create(out, force)?;
         Ok(Self {
             dataset,
@@ -66,27 +69,17 @@ impl Sink for Recording {
         };
         let sensed = self.dataset.recording(first.episode_index)?;
         let refused = |error: RecordingStreamError| self.writer.failed(error);
-        let id = format!(
-            "{} {:08x}",
-            title(run),
-            crc32fast::hash(identity(run).as_bytes())
-        );
-        let store = StoreId::new(StoreKind::Recording, ApplicationId::from(APPLICATION), id);
-        let info = StoreInfo::new(
-            store,
-            StoreSource::Other(format!("poescope {}", env!("CARGO_PKG_VERSION"))),
-        );
+        let crc = crc32fast::hash(identity(run).as_bytes());
+        // An id of one's own turns the properties off, unless they are asked for after it.
+        let builder = builder(run)
+            .recording_id(format!("{} {crc:08x}", title(run)))
+            .send_properties(true);
+        let (_, store, info, batches, hooks, _) = builder.into_args();
         let sink = Box::new(self.writer.clone());
-        #[expect(
-            clippy::default_trait_access,
-            reason = "the SDK does not export the type"
-        )]
-        let stream = RecordingStream::new(info, Some(named(run)), None, Default::default(), sink)
-            .map_err(refused)?;
+        let stream = RecordingStream::new(store, info, batches, hooks, sink).map_err(refused)?;
         write(&stream, run, &sensed).map_err(refused)?;
-        stream
-            .flush_blocking()
-            .map_err(|error| self.writer.failed(error))?;
+        let flushed = stream.flush_blocking();
+        flushed.map_err(|error| self.writer.failed(error))?;
         drop(stream);
         self.writer.check()
     }
@@ -96,69 +89,114 @@ impl Sink for Recording {
     }
 }
 
+/// With `RERUN=off` in the environment the SDK would write nothing and say nothing.
+pub fn is_off() -> bool {
+    !::rerun::decide_logging_enabled(true)
+}
+
+/// What to do about it.
+pub const OFF: &str = "the environment has RERUN set to off; unset it";
+
 /// Everything about a run.
 fn write(stream: &RecordingStream, run: &Run, sensed: &Sensed) -> RecordingStreamResult<()> {
-    stream.set_log_time_enabled(false);
-    let clock = Clock::of(&run.episode);
     describe(stream, run)?;
-    steps(stream, &clock, run, sensed)?;
+    steps(stream, run, sensed)?;
     blueprint::layout(run, blueprint::Playing::Paused).send(stream, blueprint::ACTIVE)
 }
 
 /// What does not depend on the steps that are shown.
 fn describe(stream: &RecordingStream, run: &Run) -> RecordingStreamResult<()> {
-    about::log(stream, run)?;
-    recorded::describe(stream)?;
-    space::describe(stream, run)?;
-    for (name, snapshots) in each(run) {
-        if let Some(first) = snapshots.first() {
-            model::describe(stream, &name, first)?;
-        }
-    }
-    Ok(())
+    stream.set_log_time_enabled(false);
+    let log = Log::new(stream, &run.episode);
+    about::describe(&log, run)?;
+    stream.send_property("poescope", &about::property(run))?;
+    recorded::describe(&log)?;
+    space::describe(&log, run)?;
+    each(run).try_for_each(|model| model::describe(&log, &model))
 }
 
 /// The steps of the run: what was recorded, and what every model says.
-fn steps(
-    stream: &RecordingStream,
-    clock: &Clock,
-    run: &Run,
-    sensed: &Sensed,
-) -> RecordingStreamResult<()> {
-    recorded::log(stream, clock, run, sensed)?;
-    space::recorded(stream, clock, run)?;
-    for (name, snapshots) in each(run) {
-        model::log(stream, clock, run, &name, snapshots)?;
-        space::believed(stream, clock, &name, snapshots)?;
-    }
-    Ok(())
+fn steps(stream: &RecordingStream, run: &Run, sensed: &Sensed) -> RecordingStreamResult<()> {
+    let log = Log::new(stream, &run.episode);
+    recorded::steps(&log, run, sensed)?;
+    space::recorded(&log, run)?;
+    each(run).try_for_each(|model| {
+        model::steps(&log, &model)?;
+        space::believed(&log, &model)
+    })
 }
 
-/// The models that are in a run, with the names of their paths.
-fn each(run: &Run) -> impl Iterator<Item = (String, &[crate::session::snapshot::Snapshot])> {
+/// One model of a run.
+struct Shown<'a> {
+    run: &'a Run,
+    /// What its paths begin with.
+    name: String,
+    /// What it shows at each step; at least one.
+    snapshots: &'a [Snapshot],
+}
+
+impl<'a> Shown<'a> {
+    fn first(&self) -> &'a Snapshot {
+        &self.snapshots[0]
+    }
+
+    fn steps(&self) -> impl Iterator<Item = Step<'a>> {
+        let run = self.run;
+        self.snapshots.iter().map(move |at| Step { run, at })
+    }
+
+    /// Something at each step.
+    fn at_each<T>(&self, of: impl Fn(&Step<'a>) -> Option<T>) -> AtSteps<T> {
+        self.steps()
+            .map(|step| (step.at.cursor, of(&step)))
+            .collect()
+    }
+
+    /// What the path of an expert is.
+    fn of_expert(&self, expert: Expert) -> String {
+        format!("{}/experts/{}", self.name, expert.name())
+    }
+
+    /// What a series or a view is called: with the model's name where there are several.
+    fn says(&self, what: &str) -> String {
+        if self.run.models.len() < 2 {
+            what.to_owned()
+        } else {
+            format!("{} {what}", self.name)
+        }
+    }
+}
+
+/// The models that show something.
+fn each(run: &Run) -> impl Iterator<Item = Shown<'_>> {
     let names = run.provenance.topic_names();
     run.models.iter().filter_map(move |snapshots| {
         let name = names.get(snapshots.first()?.model)?.clone();
-        Some((name, snapshots.as_slice()))
+        Some(Shown {
+            run,
+            name,
+            snapshots,
+        })
     })
 }
 
 /// What the viewer lists a recording as.
 fn title(run: &Run) -> String {
-    let models = &run.provenance.models;
-    let shown = run
-        .models
-        .iter()
-        .filter_map(|s| models.get(s.first()?.model));
-    let names: Vec<&str> = shown.map(|model| model.name.as_str()).collect();
+    let shown = run.models.iter().filter_map(|snapshots| {
+        let model = run.provenance.models.get(snapshots.first()?.model)?;
+        Some(model.name.as_str())
+    });
+    let names: Vec<&str> = shown.collect();
     format!("{} · {}", run.episode.meta.id, names.join(", "))
 }
 
-fn named(run: &Run) -> RecordingInfo {
+/// A recording of its name and time, under another id each time.
+fn builder(run: &Run) -> RecordingStreamBuilder {
     let started = run.episode.steps_nanos.first().copied().unwrap_or_default();
-    RecordingInfo::new()
-        .with_name(title(run))
-        .with_start_time(Timestamp::from(TimeInt(started)))
+    // What blueprints and recordings belong to in the viewer.
+    RecordingStreamBuilder::new("poescope")
+        .recording_name(title(run))
+        .recording_started(Timestamp::from(TimeInt(started)))
 }
 
 /// The same for the same export: two of one episode under other switches are two recordings.
@@ -168,15 +206,4 @@ fn identity(run: &Run) -> String {
         identity += &model.hash;
     }
     identity
-}
-
-/// With `RERUN=off` the SDK would write nothing and say nothing.
-fn refuse_if_off(out: &Path) -> Result<(), ExportError> {
-    if ::rerun::decide_logging_enabled(true) {
-        return Ok(());
-    }
-    Err(ExportError::Format {
-        path: out.to_owned(),
-        what: "the environment has RERUN set to off; unset it".to_owned(),
-    })
 }

@@ -6,40 +6,18 @@ needs: pip install mcap==1.6.0 mcap-ros2-support==0.6.0
 Prints how many numbers agreed; ends with an error at the first that does not.
 """
 import json
-import struct
 import sys
 
 from mcap.reader import make_reader
 from mcap_ros2.decoder import DecoderFactory
 
-
-def single(number):
-    """The 32-bit float that the text of a number stands for, as the 64-bit one that it is sent as."""
-    return struct.unpack("f", struct.pack("f", number))[0]
-
-
-def topic_of(model):
-    """What a model's topics are named after."""
-    return "_".join("".join(c if c.isalnum() else " " for c in model).split()).lower()
-
-
-def one(number):
-    """A list of it, if it is known."""
-    return None if number is None else [number]
+from exported_lines import of_experts, one, single, topic_of
 
 
 def expected(line):
     """Topic and values of everything that a line of JSON and the recording both say."""
     root = f"/poescope/{topic_of(line['model'])}/"
-    for expert in line["experts"] + [line["prior"]]:
-        who = root + expert["name"]
-        for key in ("mean", "log_var", "share"):
-            yield f"{who}/{key}", expert[key]
-        for key in ("alpha", "share_mean", "share_position", "information_nats", "mahalanobis"):
-            yield f"{who}/{key}", one(expert[key])
-        nis = expert["nis"] or {}
-        yield f"{who}/nis_head", one(nis.get("head"))
-        yield f"{who}/nis_propagated", one(nis.get("propagated"))
+    yield from of_experts(line, root)
     yield root + "belief/mean", line["posterior"]["mean"]
     yield root + "belief/log_var", line["posterior"]["log_var"]
     for what in ("belief", "prediction"):

@@ -6,38 +6,20 @@ needs: pip install rerun-sdk==0.36.3
 Prints how many numbers agreed; ends with an error at the first that does not.
 """
 import json
-import struct
 import subprocess
 import sys
 from pathlib import Path
 
+from exported_lines import of_experts, one, single, topic_of
 from rerun.experimental import RrdReader
 
 TIMELINES = {"step", "t", "stamp"}
 
 
-def single(number):
-    """The 32-bit float that the text of a number stands for, as the 64-bit one that is logged."""
-    return struct.unpack("f", struct.pack("f", number))[0]
-
-
-def one(number):
-    """A list of it, if it is known."""
-    return None if number is None else [number]
-
-
 def expected(line):
     """Entity and numbers of everything that a line of JSON and the recording both say."""
-    root = "/" + "_".join("".join(c if c.isalnum() else " " for c in line["model"]).split()).lower()
-    for expert in line["experts"] + [line["prior"]]:
-        who = f"{root}/experts/{expert['name']}"
-        for key in ("mean", "log_var", "share"):
-            yield f"{who}/{key}", expert[key]
-        for key in ("alpha", "share_mean", "share_position", "information_nats", "mahalanobis"):
-            yield f"{who}/{key}", one(expert[key])
-        nis = expert["nis"] or {}
-        yield f"{who}/nis_head", one(nis.get("head"))
-        yield f"{who}/nis_propagated", one(nis.get("propagated"))
+    root = "/" + topic_of(line["model"])
+    yield from of_experts(line, f"{root}/experts/")
     yield f"{root}/belief/mean", line["posterior"]["mean"]
     yield f"{root}/belief/log_var", line["posterior"]["log_var"]
     position = line["position"]

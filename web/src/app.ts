@@ -156,6 +156,8 @@ export class App {
         return this.#help.toggle(this.#client.keys);
       case "copy-state":
         return this.#copy();
+      case "export":
+        return this.#notices.say("files are written from a shell: poescope export --state, with what y copies");
       case "zoom":
         return this.#panes.zoom();
       case "back":

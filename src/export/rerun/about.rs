@@ -3,37 +3,36 @@
 use std::fmt::Write as _;
 
 use ::rerun::components::Text;
-use ::rerun::{
-    AnyValues, ComponentIdentifier, RecordingStream, RecordingStreamResult, TextDocument,
-};
+use ::rerun::{AnyValues, ComponentIdentifier, RecordingStreamResult, TextDocument};
 
-use super::{each, recorded, space};
+use super::log::Log;
+use super::{Shown, each, recorded, space};
 use crate::export::Run;
 use crate::export::step::{READINGS, readings_of};
-use crate::session::snapshot::Snapshot;
 
 /// Where the text is.
 pub(super) const ABOUT: &str = "about";
 
-pub(super) fn log(stream: &RecordingStream, run: &Run) -> RecordingStreamResult<()> {
-    stream.log_static(ABOUT, &TextDocument::from_markdown(text(run)))?;
+pub(super) fn describe(log: &Log<'_>, run: &Run) -> RecordingStreamResult<()> {
+    log.always(ABOUT, &TextDocument::from_markdown(text(run)))
+}
+
+/// Where the run comes from: enough to make it again.
+pub(super) fn property(run: &Run) -> AnyValues {
     let mut facts = run.provenance.facts();
-    let own = run.models.iter().flatten().next();
-    if let Some(own) = own {
-        // The episode's own: with what a selection or a mark of its state says.
+    if let Some(own) = run.models.iter().flatten().next() {
+        // It names the episode too, where the export's own is for all of them.
         facts.insert("state".to_owned(), own.state.clone());
     }
     facts.insert("episode".to_owned(), run.episode.meta.id.clone());
-    let property = facts
-        .into_iter()
-        .fold(
-            AnyValues::default(),
-            |property, (key, value)| match ComponentIdentifier::try_new(key) {
-                Ok(key) => property.with_component::<Text>(key, [value]),
-                Err(_) => property,
-            },
-        );
-    stream.send_property("poescope", &property)
+    let mut property = AnyValues::default();
+    for (key, value) in facts {
+        // Only an empty key is none.
+        if let Ok(key) = ComponentIdentifier::try_new(key) {
+            property = property.with_component::<Text>(key, [value]);
+        }
+    }
+    property
 }
 
 /// Markdown.
@@ -64,16 +63,14 @@ fn text(run: &Run) -> String {
         &format!("{root}/plate, {root}/tip, {root}/path"),
         "as recorded, m; a plate is drawn 9 cm square whatever was pushed",
     );
-    for (model, snapshots) in each(run) {
-        if let Some(first) = snapshots.first() {
-            of_model(&mut text, &model, first);
-        }
+    for model in each(run) {
+        of_model(&mut text, &model);
     }
     text
 }
 
-fn of_model(text: &mut String, model: &str, shown: &Snapshot) {
-    let root = space::ROOT;
+fn of_model(text: &mut String, shown: &Shown<'_>) {
+    let (root, model) = (space::ROOT, &shown.name);
     row(
         text,
         &format!("{model}/frames/belief, prediction"),
@@ -116,8 +113,8 @@ fn of_model(text: &mut String, model: &str, shown: &Snapshot) {
             reading.says,
         );
     }
-    for view in &shown.experts {
-        let path = format!("{model}/experts/{}", view.expert.name());
+    for view in &shown.first().experts {
+        let path = shown.of_expert(view.expert);
         row(
             text,
             &format!("{path}/mean, sigma, log_var"),

@@ -6,11 +6,10 @@ use ::rerun::blueprint::{
     Spatial2DView, Spatial3DView, Tabs, TextDocumentView, TimePanel, TimeSeriesView, Vertical,
 };
 
-use super::columns::STEP;
-use super::{about, each, recorded, space};
+use super::log::STEP;
+use super::{Shown, about, each, recorded, space};
 use crate::export::Run;
-use crate::modality::Expert;
-use crate::session::snapshot::Snapshot;
+use crate::export::step::readings_of;
 
 /// A default layout loses a race with the viewer's own; an active one does not.
 pub(super) const ACTIVE: BlueprintActivation = BlueprintActivation {
@@ -32,9 +31,7 @@ pub(super) fn layout(run: &Run, playing: Playing) -> Blueprint {
         Playing::Paused => PlayState::Paused,
         Playing::Following => PlayState::Following,
     };
-    let models: Vec<(String, &Snapshot)> = each(run)
-        .filter_map(|(name, s)| Some((name, s.first()?)))
-        .collect();
+    let models: Vec<Shown<'_>> = each(run).collect();
     let left = Vertical::new([frames(&models), table()])
         .with_row_shares(vec![models.len().max(1) as f32, 2.0]);
     let root = Horizontal::new([left.into(), series(&models)]).with_column_shares(vec![1.0, 1.0]);
@@ -51,19 +48,14 @@ pub(super) fn layout(run: &Run, playing: Playing) -> Blueprint {
         .with_selection_panel(SelectionPanel::from_state(PanelState::Collapsed))
 }
 
-fn frames(models: &[(String, &Snapshot)]) -> ContainerLike {
+fn frames(models: &[Shown<'_>]) -> ContainerLike {
     let picture = |name: String, entity: String| -> ContainerLike {
         Spatial2DView::new(name)
             .with_origin(format!("/{entity}"))
             .into()
     };
-    let rows = models.iter().map(|(model, _)| {
-        let said = |what: &str| {
-            picture(
-                spoken(models.len(), model, what),
-                format!("{model}/frames/{what}"),
-            )
-        };
+    let rows = models.iter().map(|model| {
+        let said = |what: &str| picture(model.says(what), format!("{}/frames/{what}", model.name));
         let truth = picture("truth".to_owned(), recorded::FRAME.to_owned());
         Horizontal::new([truth, said("belief"), said("prediction"), said("error")]).into()
     });
@@ -76,7 +68,7 @@ fn table() -> ContainerLike {
         .into()
 }
 
-fn series(models: &[(String, &Snapshot)]) -> ContainerLike {
+fn series(models: &[Shown<'_>]) -> ContainerLike {
     let plot = |name: &str, entities: Vec<String>| -> ContainerLike {
         let contents: Vec<String> = entities
             .iter()
@@ -87,28 +79,24 @@ fn series(models: &[(String, &Snapshot)]) -> ContainerLike {
             .with_contents(contents)
             .into()
     };
-    let of_models = |of: &dyn Fn(&str, &Snapshot) -> Vec<String>| -> Vec<String> {
-        models
-            .iter()
-            .flat_map(|(model, shown)| of(model, shown))
+    let of_experts = |reading: &str| -> Vec<String> {
+        let experts = models.iter().flat_map(|model| {
+            let all = model.first().experts.iter().map(|view| view.expert);
+            all.map(move |expert| (model, expert))
+        });
+        experts
+            .filter(|(_, expert)| readings_of(*expert).any(|has| has.name == reading))
+            .map(|(model, expert)| format!("{}/{reading}", model.of_expert(expert)))
             .collect()
     };
-    let of_experts = |reading: &'static str| {
-        of_models(&|model, shown| {
-            let has = |expert: &Expert| reading != "nis_propagated" || *expert != Expert::Prior;
-            let experts = shown.experts.iter().map(|view| view.expert).filter(has);
-            experts
-                .map(|expert| format!("{model}/experts/{}/{reading}", expert.name()))
-                .collect()
-        })
+    let of_models = |what: &str| -> Vec<String> {
+        let each = models.iter();
+        each.map(|model| format!("{}/{what}", model.name)).collect()
     };
-    let readings = |names: &'static [&'static str]| {
-        of_models(&|model, _| {
-            names
-                .iter()
-                .map(|name| format!("{model}/readings/{name}"))
-                .collect()
-        })
+    let readings = |names: &[&str]| -> Vec<String> {
+        let each = names.iter();
+        each.flat_map(|name| of_models(&format!("readings/{name}")))
+            .collect()
     };
     let overview: Vec<ContainerLike> = vec![
         plot(
@@ -140,15 +128,10 @@ fn series(models: &[(String, &Snapshot)]) -> ContainerLike {
             readings(&["nees", "nees_without_rp"]),
         ),
     ];
-    let latent: Vec<ContainerLike> = ["mean", "sigma"]
-        .into_iter()
-        .map(|of| {
-            plot(
-                &format!("belief, {of}"),
-                of_models(&|model, _| vec![format!("{model}/belief/{of}")]),
-            )
-        })
-        .collect();
+    let latent: Vec<ContainerLike> = vec![
+        plot("belief, mean", of_models("belief/mean")),
+        plot("belief, sigma", of_models("belief/sigma")),
+    ];
     let sensed: Vec<ContainerLike> = vec![
         plot("force, N", vec![recorded::FORCE.to_owned()]),
         plot("torque, N·m", vec![recorded::TORQUE.to_owned()]),
@@ -170,13 +153,4 @@ fn series(models: &[(String, &Snapshot)]) -> ContainerLike {
         about,
     ])
     .into()
-}
-
-/// What a view is called: with the model's name where there are several.
-fn spoken(models: usize, model: &str, what: &str) -> String {
-    if models < 2 {
-        what.to_owned()
-    } else {
-        format!("{model} {what}")
-    }
 }

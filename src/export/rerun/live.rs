@@ -7,15 +7,12 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::time::Duration;
 
-use ::rerun::components::Timestamp;
-use ::rerun::datatypes::TimeInt;
 use ::rerun::{
     RecordingStream, RecordingStreamBuilder, RecordingStreamError, RecordingStreamResult,
 };
 use thiserror::Error;
 
-use super::columns::Clock;
-use super::{APPLICATION, blueprint, describe, steps};
+use super::{blueprint, builder, describe, steps};
 use crate::data::{DataError, Dataset};
 use crate::episode::{Episode, EpisodeSource, Recording, SourceError};
 use crate::export::drive::{Source, provenance_of};
@@ -62,7 +59,6 @@ pub struct Live {
 struct Shown {
     identity: String,
     stream: RecordingStream,
-    clock: Clock,
     episode: Arc<Episode>,
     sensed: Recording,
     provenance: Arc<Provenance>,
@@ -110,7 +106,7 @@ impl Live {
                 models: vec![vec![snapshot.clone()]],
                 provenance: Arc::clone(&shown.provenance),
             };
-            steps(&shown.stream, &shown.clock, &run, &shown.sensed)?;
+            steps(&shown.stream, &run, &shown.sensed)?;
             let flushed = shown.stream.flush_with_timeout(PATIENCE);
             flushed.map_err(|error| LiveError::Gone(error.to_string()))?;
         }
@@ -139,13 +135,7 @@ impl Live {
             models: vec![vec![snapshot.clone()]],
             provenance: Arc::new(provenance),
         };
-        let started = episode.steps_nanos.first().copied().unwrap_or_default();
-        let builder = RecordingStreamBuilder::new(APPLICATION)
-            .recording_name(super::title(&run))
-            .recording_started(Timestamp::from(TimeInt(started)));
-        let stream = (self.open)(builder)?;
-        stream.set_log_time_enabled(false);
-        let clock = Clock::of(&episode);
+        let stream = (self.open)(builder(&run))?;
         describe(&stream, &run)?;
         // Sent again only for another model: it takes the place of what the user has made of it.
         if self.laid_out != Some(snapshot.model) {
@@ -156,7 +146,6 @@ impl Live {
         Ok(Shown {
             identity,
             stream,
-            clock,
             episode,
             sensed,
             provenance: run.provenance,

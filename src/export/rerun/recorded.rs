@@ -2,11 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use ::rerun::RecordingStreamResult;
 use ::rerun::datatypes::ColorModel;
-use ::rerun::{RecordingStream, RecordingStreamResult};
 
-use super::columns::{Clock, Pictures, Samples};
-use super::style;
+use super::log::Log;
 use crate::episode::{HAPTIC_CHANNELS, PROPRIO_CHANNELS, Recording, Track};
 use crate::export::Run;
 
@@ -24,7 +23,7 @@ pub(super) const VELOCITY: &str = "recorded/tip_velocity";
 pub(super) const CONTROL: &str = "recorded/control";
 
 /// Names of the axes. In their modality's one colour they could not be told apart: they have the viewer's.
-pub(super) fn describe(stream: &RecordingStream) -> RecordingStreamResult<()> {
+pub(super) fn describe(log: &Log<'_>) -> RecordingStreamResult<()> {
     for (path, names) in [
         (FORCE, &HAPTIC_CHANNELS[..3]),
         (TORQUE, &HAPTIC_CHANNELS[3..]),
@@ -32,45 +31,26 @@ pub(super) fn describe(stream: &RecordingStream) -> RecordingStreamResult<()> {
         (VELOCITY, &PROPRIO_CHANNELS[3..]),
         (CONTROL, &["ux", "uy"]),
     ] {
-        style::series(
-            stream,
-            path,
-            names.iter().map(|&name| name.to_owned()),
-            None,
-        )?;
+        log.names(path, names.iter().map(|&name| name.to_owned()), None)?;
     }
     Ok(())
 }
 
 /// What led up to the steps of the run.
-pub(super) fn log(
-    stream: &RecordingStream,
-    clock: &Clock,
-    run: &Run,
-    sensed: &Recording,
-) -> RecordingStreamResult<()> {
+pub(super) fn steps(log: &Log<'_>, run: &Run, sensed: &Recording) -> RecordingStreamResult<()> {
     let steps: BTreeSet<usize> = run.models.iter().flatten().map(|at| at.cursor).collect();
     let side = run.episode.layout.frame_size;
     let frame = |&step: &usize| {
         let frame = run.episode.frames.get(step);
         (step, frame.map(|frame| frame.pixels.clone()))
     };
-    let pictures = Pictures {
-        size: [side, side],
-        model: ColorModel::L,
-        rows: steps.iter().map(frame).collect(),
-    };
-    pictures.log(stream, clock, FRAME)?;
-    let samples = Samples {
-        stream,
-        clock,
-        steps: &steps,
-    };
-    samples.log(FORCE, &thirds(&sensed.wrench, 0))?;
-    samples.log(TORQUE, &thirds(&sensed.wrench, 3))?;
-    samples.log(POSITION, &sensed.ee_position)?;
-    samples.log(VELOCITY, &sensed.ee_velocity)?;
-    samples.log(CONTROL, &sensed.control)
+    let frames = steps.iter().map(frame).collect();
+    log.pictures(FRAME, [side, side], ColorModel::L, frames)?;
+    log.samples(FORCE, &thirds(&sensed.wrench, 0), &steps)?;
+    log.samples(TORQUE, &thirds(&sensed.wrench, 3), &steps)?;
+    log.samples(POSITION, &sensed.ee_position, &steps)?;
+    log.samples(VELOCITY, &sensed.ee_velocity, &steps)?;
+    log.samples(CONTROL, &sensed.control, &steps)
 }
 
 /// Three channels of a wrench.

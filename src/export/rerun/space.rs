@@ -1,13 +1,15 @@
 //! The table: plate and tip as boxes, paths, ellipses of position, and what each sensor pulls it by. Metres.
 
 use ::rerun::components::FillMode;
-use ::rerun::{Boxes3D, LineStrips3D, RecordingStream, RecordingStreamResult, ViewCoordinates};
+use ::rerun::{Boxes3D, LineStrips3D, RecordingStreamResult, ViewCoordinates};
 
-use super::columns::{Clock, Shapes};
-use super::{each, style};
+use super::log::{AtSteps, Log};
+use super::style::{self, Rgb};
+use super::{Shown, each};
 use crate::export::Run;
+use crate::export::step::Step;
 use crate::measure::ellipse::{Ellipse, SIGMAS_OF_95_PERCENT};
-use crate::session::snapshot::{Estimate, Snapshot};
+use crate::session::snapshot::Estimate;
 
 /// What all of it lies under.
 pub(super) const ROOT: &str = "table";
@@ -25,179 +27,120 @@ const THICK: f32 = 0.0014;
 const ROUND: usize = 48;
 
 /// Which way is up, and the paths over the whole episode.
-pub(super) fn describe(stream: &RecordingStream, run: &Run) -> RecordingStreamResult<()> {
-    stream.log_static(ROOT, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
-    let truth: Vec<[f32; 3]> = run
-        .episode
-        .object
-        .iter()
-        .flatten()
-        .map(|p| [p.x, p.y, ABOVE])
-        .collect();
-    path(stream, "path", truth, style::TRUTH)?;
-    for (model, snapshots) in each(run) {
-        let Some(position) = snapshots.first().and_then(|first| first.position.as_ref()) else {
+pub(super) fn describe(log: &Log<'_>, run: &Run) -> RecordingStreamResult<()> {
+    log.always(ROOT, &ViewCoordinates::RIGHT_HAND_Z_UP())?;
+    let truth = run.episode.object.iter().flatten();
+    path(
+        log,
+        "path",
+        style::TRUTH,
+        truth.map(|pose| [pose.x, pose.y]),
+    )?;
+    for model in each(run) {
+        let Some(position) = &model.first().position else {
             continue;
         };
-        let points = |estimates: &[Option<Estimate>]| -> Vec<[f32; 3]> {
-            estimates
-                .iter()
-                .flatten()
-                .map(|at| [at.x, at.y, ABOVE])
-                .collect()
-        };
-        let (belief, prediction) = (points(&position.belief), points(&position.prediction));
-        path(
-            stream,
-            &format!("{model}/belief/path"),
-            belief,
-            style::BELIEF,
-        )?;
-        path(
-            stream,
-            &format!("{model}/prediction/path"),
-            prediction,
-            style::PREDICTION,
-        )?;
+        for (name, rgb, estimates) in [
+            ("belief", style::BELIEF, &position.belief),
+            ("prediction", style::PREDICTION, &position.prediction),
+        ] {
+            let points = estimates.iter().flatten().map(|at| [at.x, at.y]);
+            path(log, &format!("{}/{name}/path", model.name), rgb, points)?;
+        }
     }
     Ok(())
 }
 
 fn path(
-    stream: &RecordingStream,
+    log: &Log<'_>,
     name: &str,
-    points: Vec<[f32; 3]>,
-    color: (u8, u8, u8),
+    rgb: Rgb,
+    points: impl Iterator<Item = [f32; 2]>,
 ) -> RecordingStreamResult<()> {
+    let points: Vec<[f32; 3]> = points.map(|[x, y]| [x, y, ABOVE]).collect();
     if points.len() < 2 {
         return Ok(());
     }
     let line = LineStrips3D::new([points])
-        .with_colors([style::color(color)])
+        .with_colors([style::color(rgb)])
         .with_radii([THIN]);
-    stream.log_static(format!("{ROOT}/{name}"), &line)
+    log.always(&format!("{ROOT}/{name}"), &line)
 }
 
 /// Plate and tip at the steps of the run.
-pub(super) fn recorded(
-    stream: &RecordingStream,
-    clock: &Clock,
-    run: &Run,
-) -> RecordingStreamResult<()> {
-    let Some(snapshots) = run.models.first() else {
+pub(super) fn recorded(log: &Log<'_>, run: &Run) -> RecordingStreamResult<()> {
+    let Some(any) = each(run).next() else {
         return Ok(());
     };
-    let steps = || snapshots.iter().map(|at| at.cursor);
-    let middle = 0.5 * PLATE[2];
-    if let Some(poses) = &run.episode.object {
-        let plates =
-            steps().map(|step| (step, poses.get(step).map(|p| ([p.x, p.y, middle], p.yaw))));
-        let solid = solid(PLATE, (0x96, 0xA0, 0xAC)).with_fill_mode(FillMode::Solid);
-        Shapes::new(plates).log_boxes(stream, clock, &format!("{ROOT}/plate"), &solid)?;
-    }
-    if let Some(tip) = &run.episode.tip {
-        let tips = steps().map(|step| {
-            (
-                step,
-                tip.get(step).map(|&[x, y]| ([x, y, 0.5 * TIP[2]], 0.0)),
-            )
-        });
-        let solid = solid(TIP, (0xE0, 0xE0, 0x90)).with_fill_mode(FillMode::Solid);
-        Shapes::new(tips).log_boxes(stream, clock, &format!("{ROOT}/tip"), &solid)?;
-    }
-    Ok(())
+    let plates = any.at_each(|step| {
+        let [x, y, yaw] = step.truth()?;
+        Some(([x, y, 0.5 * PLATE[2]], yaw))
+    });
+    let plate = solid(PLATE, style::PLATE).with_fill_mode(FillMode::Solid);
+    log.boxes(&format!("{ROOT}/plate"), &plate, plates)?;
+    let tips = any.at_each(|step| {
+        let [x, y] = step.tip()?;
+        Some(([x, y, 0.5 * TIP[2]], 0.0))
+    });
+    let tip = solid(TIP, style::TIP).with_fill_mode(FillMode::Solid);
+    log.boxes(&format!("{ROOT}/tip"), &tip, tips)
 }
 
-fn solid(sides: [f32; 3], color: (u8, u8, u8)) -> Boxes3D {
+fn solid(sides: [f32; 3], rgb: Rgb) -> Boxes3D {
     Boxes3D::update_fields()
         .with_half_sizes([sides.map(|side| 0.5 * side)])
-        .with_colors([style::color(color)])
+        .with_colors([style::color(rgb)])
 }
 
 /// Where a model believes and predicts the plate to be, and why.
-pub(super) fn believed(
-    stream: &RecordingStream,
-    clock: &Clock,
-    model: &str,
-    snapshots: &[Snapshot],
-) -> RecordingStreamResult<()> {
-    let read = |at: &Snapshot, predicted: bool| -> Option<Estimate> {
-        let position = at.position.as_ref()?;
-        let of = if predicted {
-            &position.prediction
-        } else {
-            &position.belief
-        };
-        *of.get(at.cursor)?
-    };
-    for (name, predicted, color) in [
-        ("belief", false, style::BELIEF),
-        ("prediction", true, style::PREDICTION),
-    ] {
-        let round = |sigmas: f32| {
-            Shapes::new(
-                snapshots
-                    .iter()
-                    .map(|at| (at.cursor, read(at, predicted).map(|at| outline(at, sigmas)))),
-            )
-        };
-        let root = format!("{ROOT}/{model}/{name}");
-        round(1.0).log_lines(
-            stream,
-            clock,
-            &format!("{root}/ellipse_1_sigma"),
-            style::color(color),
-            THICK,
-        )?;
-        // The prediction's covariance does not grow with the horizon: no mass is claimed for it.
-        if !predicted {
-            round(SIGMAS_OF_95_PERCENT).log_lines(
-                stream,
-                clock,
-                &format!("{root}/ellipse_95"),
-                style::color(color),
-                THIN,
-            )?;
-        }
-    }
-    let ghosts = snapshots.iter().map(|at| {
-        let yaw = at
-            .position
-            .as_ref()
-            .and_then(|p| p.truth.get(at.cursor))
-            .map_or(0.0, |pose| pose.yaw);
-        (
-            at.cursor,
-            read(at, true).map(|at| ([at.x, at.y, 0.5 * PLATE[2]], yaw)),
-        )
-    });
-    let ghost = solid(PLATE, style::PREDICTION).with_fill_mode(FillMode::MajorWireframe);
-    Shapes::new(ghosts).log_boxes(
-        stream,
-        clock,
-        &format!("{ROOT}/{model}/prediction/plate"),
-        &ghost,
+pub(super) fn believed(log: &Log<'_>, model: &Shown<'_>) -> RecordingStreamResult<()> {
+    let root = format!("{ROOT}/{}", model.name);
+    let (belief, prediction) = (style::BELIEF, style::PREDICTION);
+    log.lines(
+        &format!("{root}/belief/ellipse_1_sigma"),
+        (belief, THICK),
+        ellipses(model, Step::belief, 1.0),
     )?;
-    let experts = snapshots.first().map_or(&[][..], |first| &first.experts);
-    for (i, view) in experts.iter().enumerate() {
-        let pulls = snapshots.iter().map(|at| (at.cursor, pull(at, i)));
-        let path = format!("{ROOT}/{model}/pull/{}", view.expert.name());
-        Shapes::new(pulls).log_arrows(
-            stream,
-            clock,
-            &path,
-            style::of_expert(view.expert),
-            THICK,
-        )?;
+    log.lines(
+        &format!("{root}/belief/ellipse_95"),
+        (belief, THIN),
+        ellipses(model, Step::belief, SIGMAS_OF_95_PERCENT),
+    )?;
+    // The prediction's covariance does not grow with the horizon: no mass is claimed for it.
+    log.lines(
+        &format!("{root}/prediction/ellipse_1_sigma"),
+        (prediction, THICK),
+        ellipses(model, Step::prediction, 1.0),
+    )?;
+    let ghosts = model.at_each(|step| {
+        let at = step.prediction()?;
+        let yaw = step.truth().map_or(0.0, |[.., yaw]| yaw);
+        Some(([at.x, at.y, 0.5 * PLATE[2]], yaw))
+    });
+    let ghost = solid(PLATE, prediction).with_fill_mode(FillMode::MajorWireframe);
+    log.boxes(&format!("{root}/prediction/plate"), &ghost, ghosts)?;
+    for (i, view) in model.first().experts.iter().enumerate() {
+        let pulls = model.at_each(|step| pull(step, i));
+        let path = format!("{root}/pull/{}", view.expert.name());
+        log.arrows(&path, (view.expert.rgb(), THICK), pulls)?;
     }
     Ok(())
 }
 
 /// From where the prior alone has the plate, by what the expert pulls (D7).
-fn pull(at: &Snapshot, expert: usize) -> Option<[[f32; 3]; 2]> {
-    let fusion = at.fusion.as_ref()?;
-    let ([x, y], [dx, dy]) = (fusion.prior_m?, fusion.experts.get(expert)?.pull_m?);
+fn pull(step: &Step<'_>, expert: usize) -> Option<[[f32; 3]; 2]> {
+    let [x, y] = step.at.fusion.as_ref()?.prior_m?;
+    let [dx, dy] = step.reading(expert)?.pull_m?;
     Some([[x, y, ABOVE], [dx, dy, 0.0]])
+}
+
+/// The ellipse of a position at each step.
+fn ellipses<'a>(
+    model: &Shown<'a>,
+    of: impl Fn(&Step<'a>) -> Option<Estimate>,
+    sigmas: f32,
+) -> AtSteps<Vec<[f32; 3]>> {
+    model.at_each(|step| Some(outline(of(step)?, sigmas)))
 }
 
 /// The ellipse as a closed line: the viewer's own do not turn.

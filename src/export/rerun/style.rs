@@ -1,37 +1,23 @@
-//! Colours and names of series: one modality has one colour everywhere.
+//! Colours: one modality has one colour everywhere.
 
 use ::rerun::components::{Color, MagnificationFilter};
-use ::rerun::{RecordingStream, RecordingStreamResult, SeriesLines};
 
-use crate::modality::Expert;
+/// Red, green and blue, sRGB.
+pub(super) type Rgb = (u8, u8, u8);
 
 /// Pixels are shown as they are.
 pub(super) const NEAREST: MagnificationFilter = MagnificationFilter::Nearest;
 /// What was recorded.
-pub(super) const TRUTH: (u8, u8, u8) = (0xB8, 0xB8, 0xB8);
+pub(super) const TRUTH: Rgb = (0xB8, 0xB8, 0xB8);
 /// The belief's; light, since the viewer is dark.
-pub(super) const BELIEF: (u8, u8, u8) = (0xF5, 0xF5, 0xF5);
+pub(super) const BELIEF: Rgb = (0xF5, 0xF5, 0xF5);
 /// The prediction's.
-pub(super) const PREDICTION: (u8, u8, u8) = (0x56, 0xB4, 0xE9);
+pub(super) const PREDICTION: Rgb = (0x56, 0xB4, 0xE9);
+/// The plate.
+pub(super) const PLATE: Rgb = (0x96, 0xA0, 0xAC);
+/// The tip that pushes it.
+pub(super) const TIP: Rgb = (0xE0, 0xE0, 0x90);
 
-pub(super) fn color((r, g, b): (u8, u8, u8)) -> Color {
+pub(super) fn color((r, g, b): Rgb) -> Color {
     Color::from_rgb(r, g, b)
-}
-
-pub(super) fn of_expert(expert: Expert) -> Color {
-    color(expert.rgb())
-}
-
-/// Names the series of an entity; one colour makes all of them alike, none leaves it to the viewer.
-pub(super) fn series(
-    stream: &RecordingStream,
-    path: &str,
-    names: impl IntoIterator<Item = String>,
-    color: Option<Color>,
-) -> RecordingStreamResult<()> {
-    let lines = SeriesLines::new().with_names(names);
-    match color {
-        Some(color) => stream.log_static(path, &lines.with_colors([color])),
-        None => stream.log_static(path, &lines),
-    }
 }
