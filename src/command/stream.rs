@@ -3,8 +3,8 @@
 use std::net::{TcpStream, ToSocketAddrs};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{SyncSender, sync_channel};
-use std::thread::{self, JoinHandle};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread;
 use std::time::Duration;
 
 use anyhow::{Context, bail};
@@ -18,11 +18,15 @@ use crate::session::snapshot::Message;
 /// How long a viewer may take to answer at the start.
 const PATIENCE: Duration = Duration::from_secs(2);
 
+/// The longest that the last step may take when all else has ended.
+const FAREWELL: Duration = Duration::from_secs(3);
+
 /// A stream that goes on until this is dropped.
 pub struct Streaming {
     ends: Arc<AtomicBool>,
     wake: SyncSender<()>,
-    thread: Option<JoinHandle<()>>,
+    /// Cut off by the thread's end.
+    ended: Receiver<()>,
 }
 
 /// Begins to stream `session`, which is of `opened`, to the viewer at `url`.
@@ -37,14 +41,17 @@ pub fn start(session: &mut Session, opened: &Opened, url: &str) -> anyhow::Resul
     let face = session.attach(Box::new(move || {
         let _ = waker.try_send(());
     }));
-    let mut live = Live::connect(
+    let live = Live::connect(
         Arc::clone(&opened.dataset),
         opened.models.clone(),
         url.to_owned(),
     );
     let ends = Arc::new(AtomicBool::new(false));
-    let (ended, named) = (Arc::clone(&ends), url.to_owned());
+    let (stop, named) = (Arc::clone(&ends), url.to_owned());
+    let (alive, ended) = sync_channel::<()>(0);
     let stream = move || {
+        // The stream is closed first, and then it has ended.
+        let (_alive, mut live) = (alive, live);
         loop {
             if let Err(error) = live.show(&face.snapshot()) {
                 face.say(Message {
@@ -53,30 +60,28 @@ pub fn start(session: &mut Session, opened: &Opened, url: &str) -> anyhow::Resul
                 });
                 return;
             }
-            if wakes.recv().is_err() || ended.load(Ordering::Relaxed) {
+            if wakes.recv().is_err() || stop.load(Ordering::Relaxed) {
                 return;
             }
         }
     };
-    let thread = thread::Builder::new()
-        .name("poescope-rerun".to_owned())
-        .spawn(stream);
-    let thread = Some(thread.context("starting a thread for Rerun")?);
+    let thread = thread::Builder::new().name("poescope-rerun".to_owned());
+    thread
+        .spawn(stream)
+        .context("starting a thread for Rerun")?;
     session.say(Message {
         error: false,
         text: format!("streaming to Rerun at {url}"),
     });
-    Ok(Streaming { ends, wake, thread })
+    Ok(Streaming { ends, wake, ended })
 }
 
 impl Drop for Streaming {
     fn drop(&mut self) {
         self.ends.store(true, Ordering::Relaxed);
         let _ = self.wake.try_send(());
-        if let Some(thread) = self.thread.take() {
-            // It has reported whatever went wrong already.
-            let _ = thread.join();
-        }
+        // The SDK waits for good for a viewer that has stopped: then the process ends without it.
+        let _ = self.ended.recv_timeout(FAREWELL);
     }
 }
 

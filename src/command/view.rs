@@ -44,6 +44,9 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     if !in_terminal && args.serve.is_some() {
         bail!("--serve needs a terminal here; `poescope serve` needs none");
     }
+    if !in_terminal && args.rerun.is_some() {
+        bail!("--rerun needs a terminal here; `poescope serve --rerun` needs none");
+    }
     let size = if in_terminal {
         terminal_size().unwrap_or(args.size)
     } else {

@@ -23,6 +23,7 @@ pub type Notify = Box<dyn Fn() + Send + Sync>;
 #[derive(Clone)]
 pub struct Attached {
     line: Arc<Line>,
+    said: Said,
     shared: Arc<Shared>,
 }
 
@@ -36,8 +37,6 @@ struct Line {
 #[derive(Default)]
 struct Asked {
     commands: VecDeque<Command>,
-    /// To be told to the user.
-    said: Option<Message>,
     wants: Wants,
 }
 
@@ -60,9 +59,9 @@ impl Attached {
         self.shared.wake();
     }
 
-    /// Tells the user something, through every face.
+    /// Tells the user something, through every face; also by one that leaves with it.
     pub fn say(&self, message: Message) {
-        lock(&self.line.asked).said = Some(message);
+        *lock(&self.said) = Some(message);
         self.shared.wake();
     }
 
@@ -72,9 +71,15 @@ impl Attached {
     }
 }
 
+/// What a face has to tell the user.
+type Said = Arc<Mutex<Option<Message>>>;
+
 /// The session's ends of all lines.
 #[derive(Default)]
-pub(super) struct Lines(Vec<Weak<Line>>);
+pub(super) struct Lines {
+    faces: Vec<Weak<Line>>,
+    said: Said,
+}
 
 impl Session {
     /// Attaches a face; `notify` is called on this session's thread after each new snapshot, and must be quick.
@@ -84,30 +89,33 @@ impl Session {
             newest: Mutex::new(Arc::new(self.shown.clone())),
             notify,
         });
-        self.lines.0.push(Arc::downgrade(&line));
+        self.lines.faces.push(Arc::downgrade(&line));
         Attached {
             line,
+            said: Arc::clone(&self.lines.said),
             shared: Arc::clone(&self.shared),
         }
     }
 
     /// Does what attached faces have asked for since.
     pub(super) fn hear(&mut self) {
-        self.lines.0.retain(|line| line.strong_count() > 0);
-        let lines: Vec<Arc<Line>> = self.lines.0.iter().filter_map(Weak::upgrade).collect();
+        let faces = &mut self.lines.faces;
+        faces.retain(|line| line.strong_count() > 0);
+        let lines: Vec<Arc<Line>> = faces.iter().filter_map(Weak::upgrade).collect();
         let mut wants = self.own_wants;
         for line in lines {
             let mut asked = lock(&line.asked);
             wants = wants.and(asked.wants);
             let commands = std::mem::take(&mut asked.commands);
-            let said = asked.said.take();
             drop(asked);
             for command in commands {
                 self.apply(command);
             }
-            if let Some(message) = said {
-                self.say(message);
-            }
+        }
+        // Last, so that it is what stays on the screen.
+        let said = lock(&self.lines.said).take();
+        if let Some(message) = said {
+            self.say(message);
         }
         if self.wants != wants {
             self.wants = wants;
@@ -117,11 +125,11 @@ impl Session {
 
     /// Shows attached faces what is new.
     pub(super) fn tell(&self) {
-        if self.lines.0.is_empty() {
+        if self.lines.faces.is_empty() {
             return;
         }
         let newest = Arc::new(self.shown.clone());
-        for line in self.lines.0.iter().filter_map(Weak::upgrade) {
+        for line in self.lines.faces.iter().filter_map(Weak::upgrade) {
             *lock(&line.newest) = Arc::clone(&newest);
             (line.notify)();
         }
@@ -194,6 +202,8 @@ mod tests {
             text: "written".to_owned(),
         };
         one.say(message.clone());
+        // It is heard although the face has gone.
+        drop(one);
         session.update(Duration::ZERO);
         assert_eq!(other.snapshot().message.as_ref(), Some(&message));
         assert_eq!(session.snapshot().message, Some(message));

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use ::rerun::components::{ImageBuffer, ImageFormat};
+use ::rerun::components::{FillMode, ImageBuffer, ImageFormat};
 use ::rerun::datatypes::{ChannelDatatype, ColorModel};
 use ::rerun::{
     Arrows3D, AsComponents, Boxes3D, Image, LineStrips3D, Quaternion, RecordingStream,
@@ -168,20 +168,24 @@ impl<'a> Log<'a> {
         })
     }
 
-    /// Boxes at places in metres, turned about the vertical by radians.
+    /// Boxes with these sides at places in metres, turned about the vertical by radians.
     pub(super) fn boxes(
         &self,
         path: &str,
-        look: &Boxes3D,
+        (sides, rgb, fill): ([f32; 3], Rgb, FillMode),
         rows: AtSteps<([f32; 3], f32)>,
     ) -> RecordingStreamResult<()> {
-        self.at_times(path, look, rows, |places, lengths| {
+        let look = Boxes3D::update_fields()
+            .with_colors([color(rgb)])
+            .with_fill_mode(fill);
+        self.at_times(path, &look, rows, |places, lengths| {
             let (centers, turns): (Vec<_>, Vec<_>) = places.into_iter().unzip();
             let turns = turns.into_iter().map(|yaw: f32| {
                 let (sin, cos) = (0.5 * yaw).sin_cos();
                 Quaternion::from_xyzw([0.0, 0.0, sin, cos])
             });
-            Boxes3D::update_fields()
+            // A size that is always there would be drawn at the origin where there is no place.
+            Boxes3D::from_half_sizes(vec![sides.map(|side| 0.5 * side); centers.len()])
                 .with_centers(centers)
                 .with_quaternions(turns)
                 .columns(lengths)

@@ -1,7 +1,7 @@
 //! The table: plate and tip as boxes, paths, ellipses of position, and what each sensor pulls it by. Metres.
 
 use ::rerun::components::FillMode;
-use ::rerun::{Boxes3D, LineStrips3D, RecordingStreamResult, ViewCoordinates};
+use ::rerun::{LineStrips3D, RecordingStreamResult, ViewCoordinates};
 
 use super::log::{AtSteps, Log};
 use super::style::{self, Rgb};
@@ -76,20 +76,14 @@ pub(super) fn recorded(log: &Log<'_>, run: &Run) -> RecordingStreamResult<()> {
         let [x, y, yaw] = step.truth()?;
         Some(([x, y, 0.5 * PLATE[2]], yaw))
     });
-    let plate = solid(PLATE, style::PLATE).with_fill_mode(FillMode::Solid);
-    log.boxes(&format!("{ROOT}/plate"), &plate, plates)?;
+    let plate = (PLATE, style::PLATE, FillMode::Solid);
+    log.boxes(&format!("{ROOT}/plate"), plate, plates)?;
     let tips = any.at_each(|step| {
         let [x, y] = step.tip()?;
         Some(([x, y, 0.5 * TIP[2]], 0.0))
     });
-    let tip = solid(TIP, style::TIP).with_fill_mode(FillMode::Solid);
-    log.boxes(&format!("{ROOT}/tip"), &tip, tips)
-}
-
-fn solid(sides: [f32; 3], rgb: Rgb) -> Boxes3D {
-    Boxes3D::update_fields()
-        .with_half_sizes([sides.map(|side| 0.5 * side)])
-        .with_colors([style::color(rgb)])
+    let tip = (TIP, style::TIP, FillMode::Solid);
+    log.boxes(&format!("{ROOT}/tip"), tip, tips)
 }
 
 /// Where a model believes and predicts the plate to be, and why.
@@ -117,8 +111,8 @@ pub(super) fn believed(log: &Log<'_>, model: &Shown<'_>) -> RecordingStreamResul
         let yaw = step.truth().map_or(0.0, |[.., yaw]| yaw);
         Some(([at.x, at.y, 0.5 * PLATE[2]], yaw))
     });
-    let ghost = solid(PLATE, prediction).with_fill_mode(FillMode::MajorWireframe);
-    log.boxes(&format!("{root}/prediction/plate"), &ghost, ghosts)?;
+    let ghost = (PLATE, prediction, FillMode::MajorWireframe);
+    log.boxes(&format!("{root}/prediction/plate"), ghost, ghosts)?;
     for (i, view) in model.first().experts.iter().enumerate() {
         let pulls = model.at_each(|step| pull(step, i));
         let path = format!("{root}/pull/{}", view.expert.name());
