@@ -293,24 +293,64 @@ pub struct EvalArgs {
     /// Dataset to score on [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
-    /// Checkpoint folder [default: the sample model]
+    /// Checkpoint folder; repeat for several [default: every one beside the data, else the sample's]
     #[arg(long)]
-    pub model: Option<PathBuf>,
+    pub model: Vec<PathBuf>,
+    /// The paper's protocol: `synthetic` sees 4 images and predicts 11, `mit` sees 5 and predicts 37
+    #[arg(long, value_enum, default_value_t)]
+    pub preset: EvalPreset,
     /// Split to score, where the dataset names splits
     #[arg(long, value_parser = parse_split, default_value = "test")]
     pub split: Split,
-    /// c, the images seen before the rollout
-    #[arg(long, default_value_t = 4)]
-    pub context: usize,
-    /// h, the images predicted
-    #[arg(long, default_value_t = 11)]
-    pub horizon: usize,
-    /// Print JSON instead of a Markdown table
+    /// c, the images seen before the rollout [default: the preset's]
+    #[arg(long)]
+    pub context: Option<usize>,
+    /// h, the images predicted [default: the preset's]
+    #[arg(long)]
+    pub horizon: Option<usize>,
+    /// Score models under these switches and damaged inputs as well, as a state string has them:
+    /// `alpha=haptic:0` or `corrupt=vision:noise:0.5`; repeat for several
+    #[arg(long, value_name = "STATE")]
+    pub state: Vec<String>,
+    /// Fit the pose regressors anew on the training split of this dataset, instead of taking the checkpoints'
+    #[arg(long, value_name = "DATA")]
+    pub fit: Option<PathBuf>,
+    /// Folder for scores, tables and figures; a run that was stopped goes on from what it holds
+    #[arg(long)]
+    pub out: Option<PathBuf>,
+    /// Score only every n-th episode, from the i-th on: `2/4`; the scores go to --out
+    #[arg(long, value_name = "I/N", value_parser = parse_shard, requires = "out", conflicts_with = "merge")]
+    pub shard: Option<(usize, usize)>,
+    /// Score nothing, sum up what shards have left in --out
+    #[arg(long, requires = "out")]
+    pub merge: bool,
+    /// Print JSON instead of Markdown tables
     #[arg(long)]
     pub json: bool,
     /// Where the dataset has its roles.
     #[command(flatten)]
     pub mapping: TopicArgs,
+}
+
+/// How much is seen and predicted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum)]
+pub enum EvalPreset {
+    /// 4 and 11.
+    #[default]
+    Synthetic,
+    /// 5 and 37.
+    Mit,
+}
+
+/// `2/4`: the second of four.
+fn parse_shard(text: &str) -> Result<(usize, usize), String> {
+    let shard = text
+        .split_once('/')
+        .and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
+    match shard {
+        Some((i, n)) if (1..=n).contains(&i) => Ok((i, n)),
+        _ => Err(format!("{text:?} is not like 2/4, the second of four")),
+    }
 }
 
 /// Arguments of `export`.

@@ -9,13 +9,16 @@
 pub mod color;
 pub mod csv;
 pub mod drive;
+pub mod figures;
 pub mod json;
 pub mod mcap;
 pub mod output;
+pub mod plot;
 pub mod png;
 #[cfg(feature = "rerun")]
 pub mod rerun;
 pub mod step;
+pub mod table;
 
 mod facts;
 

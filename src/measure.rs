@@ -20,7 +20,9 @@ pub mod leave_one_out;
 mod position;
 pub mod pull;
 pub mod samples;
+pub mod shapley;
 pub mod spread;
+pub mod ssim;
 pub mod tempering;
 
 #[cfg(test)]

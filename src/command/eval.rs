@@ -1,138 +1,225 @@
-//! `poescope eval`: open-loop prediction of a model, horizon by horizon, beside the trivial predictors.
+//! `poescope eval`: the paper's tables and figures for any models on any dataset.
 
-use std::fmt::Write as _;
+mod candidates;
+mod figures;
+mod scores;
+mod settings;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
 
+use self::scores::{Identity, ScoreFile};
 use super::{open, sample, say};
-use crate::cli::EvalArgs;
+use crate::cli::{EvalArgs, EvalPreset};
 use crate::data::Dataset;
-use crate::episode::EpisodeSource;
-use crate::eval::{self, Protocol, Report};
-use crate::model::checkpoint;
-use crate::model::inspect::Inspector;
+use crate::episode::{Episode, EpisodeSource};
+use crate::eval::protocol::Protocol;
+use crate::eval::score::{Contest, EpisodeScores, score};
+use crate::eval::summary::summarise;
+use crate::eval::{markdown, tables};
+use crate::export::table::{write_csv, write_parquet};
 use crate::model::observation::{self, suits};
+
+/// Episodes between two looks at whether to stop, and between two writes.
+const CHUNK: usize = 16;
 
 /// Runs it.
 pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
-    let folder = sample::model(args.model.as_ref())?;
-    let (model, _) = checkpoint::load(&folder)?;
-    let mean_path = folder.join(checkpoint::MEAN_FRAME);
-    let mean_frame = image::open(&mean_path)
-        .with_context(|| {
-            format!(
-                "{}: the mean training frame; train writes it",
-                mean_path.display()
-            )
-        })?
-        .into_luma8();
-    let mean_frame: Vec<f32> = mean_frame
-        .into_raw()
-        .into_iter()
-        .map(|p| f32::from(p) / 255.0)
-        .collect();
+    let stop = super::stop_on_signals()?;
     let path = sample::data(args.data.as_ref())?;
+    let folders = folders(args, &path)?;
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
-    let protocol = Protocol {
-        context: args.context,
-        horizon: args.horizon,
+    let contest = contest(args, &folders)?;
+    let wanted = wanted(args, &dataset, &folders[0]);
+    if let Some(out) = &args.out {
+        std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
+    }
+    let identity = Identity::of(&contest, &folders, &dataset, args.split)?;
+    let mut file = match &args.out {
+        Some(out) => ScoreFile::open(out, &identity, args.shard)?,
+        None => ScoreFile::default(),
     };
-    let config = &model.config;
-    if protocol.context <= config.frame_stack || protocol.horizon == 0 {
+    let own: Vec<usize> = match args.shard {
+        Some((i, n)) => wanted.iter().copied().skip(i - 1).step_by(n).collect(),
+        None => wanted.clone(),
+    };
+    let id = |index: usize| dataset.metas()[index].id.as_str();
+    let left: Vec<usize> = own.iter().copied().filter(|&i| !file.has(id(i))).collect();
+    if args.merge && !left.is_empty() {
         bail!(
-            "--context must be more than {} and --horizon more than 0",
-            config.frame_stack
+            "{} of {} episodes are not scored yet, `{}` among them; run their shards, or leave out --merge",
+            left.len(),
+            own.len(),
+            id(left[0])
         );
     }
-    if mean_frame.len() != config.frame_size * config.frame_size {
-        bail!(
-            "{} is not {1} x {1} pixels",
-            mean_path.display(),
-            config.frame_size
-        );
-    }
-    let mut episodes = Vec::new();
-    for (index, split) in dataset
-        .splits(open::split_seed(&folder))
-        .into_iter()
-        .enumerate()
-    {
-        if split != args.split {
-            continue;
+    let bar = ProgressBar::new(own.len() as u64);
+    bar.set_style(ProgressStyle::with_template(
+        "scoring {bar:30} {pos}/{len} episodes, {eta} left",
+    )?);
+    bar.inc((own.len() - left.len()) as u64);
+    for chunk in left.chunks(CHUNK) {
+        if stop.load(Ordering::Relaxed) {
+            bar.finish_and_clear();
+            bail!(match &args.out {
+                Some(_) => "stopped; go on with the same command",
+                None => "stopped",
+            });
         }
-        let episode = match dataset.load(index, config.layout()) {
-            Ok(episode) => episode,
-            Err(error) => {
-                eprintln!("left out: {error}");
-                continue;
-            }
-        };
+        let scored: Vec<Option<EpisodeScores>> = chunk
+            .par_iter()
+            .map(|&index| one(&contest, &dataset, index, &path))
+            .collect::<anyhow::Result<_>>()?;
+        for scores in scored.into_iter().flatten() {
+            file.push(scores)?;
+        }
+        bar.inc(chunk.len() as u64);
+    }
+    bar.finish_and_clear();
+    if args.shard.is_some() {
+        eprintln!("this shard is scored; sum up with --merge once all are");
+        return Ok(());
+    }
+    let order: Vec<&str> = wanted.iter().map(|&i| id(i)).collect();
+    conclude(args, &contest, &file.in_order(&order), &dataset)
+}
+
+/// The checkpoints: those that are named, those beside the data, the sample's.
+fn folders(args: &EvalArgs, data: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    if !args.model.is_empty() {
+        return Ok(args.model.clone());
+    }
+    let beside = sample::beside(data);
+    if beside.is_empty() {
+        return Ok(vec![sample::model(None)?]);
+    }
+    Ok(beside)
+}
+
+/// The models under every setting.
+fn contest(args: &EvalArgs, folders: &[PathBuf]) -> anyhow::Result<Contest> {
+    let preset = match args.preset {
+        EvalPreset::Synthetic => Protocol::SYNTHETIC,
+        EvalPreset::Mit => Protocol::MIT,
+    };
+    let protocol = Protocol {
+        context: args.context.unwrap_or(preset.context),
+        horizon: args.horizon.unwrap_or(preset.horizon),
+    };
+    let mut candidates = candidates::open(folders)?;
+    if let Some(data) = &args.fit {
+        candidates::fit(&mut candidates, data, folders, &args.mapping.topics)?;
+    }
+    for candidate in &candidates {
+        let stack = candidate.inspector.model().config.frame_stack;
+        if protocol.context <= stack || protocol.horizon == 0 {
+            bail!("--context must be more than {stack} and --horizon more than 0");
+        }
+    }
+    let subjects = settings::subjects(&candidates, &args.state, protocol)?;
+    let mean_frame = candidates::mean_frame(&folders[0], &candidates[0])?;
+    Ok(Contest {
+        candidates,
+        subjects,
+        protocol,
+        mean_frame,
+    })
+}
+
+/// The episodes of the split.
+fn wanted(args: &EvalArgs, dataset: &Dataset, folder: &Path) -> Vec<usize> {
+    let splits = dataset.splits(open::split_seed(folder)).into_iter();
+    let of_split = splits.enumerate().filter(|(_, split)| *split == args.split);
+    of_split.map(|(index, _)| index).collect()
+}
+
+/// Scores an episode; none, and a word on standard error, for one that cannot be read or is too short.
+fn one(
+    contest: &Contest,
+    dataset: &Dataset,
+    index: usize,
+    path: &Path,
+) -> anyhow::Result<Option<EpisodeScores>> {
+    let Some(episode) = load(contest, dataset, index, path)? else {
+        return Ok(None);
+    };
+    let scores = score(contest, &episode);
+    Ok(Some(scores.with_context(|| {
+        format!("episode `{}`", episode.meta.id)
+    })?))
+}
+
+fn load(
+    contest: &Contest,
+    dataset: &Dataset,
+    index: usize,
+    path: &Path,
+) -> anyhow::Result<Option<Episode>> {
+    let first = &contest.candidates[0].inspector.model().config;
+    let episode = match dataset.load(index, first.layout()) {
+        Ok(episode) => episode,
+        Err(error) => {
+            eprintln!("left out: {error}");
+            return Ok(None);
+        }
+    };
+    for candidate in &contest.candidates {
+        let config = &candidate.inspector.model().config;
         let missing = observation::missing(config, &episode);
         if !missing.is_empty() {
             bail!(
-                "{}: episode `{}` lacks {}",
+                "{}: episode `{}` lacks {}, which model `{}` sees",
                 path.display(),
                 episode.meta.id,
-                missing.join(", ")
+                missing.join(", "),
+                candidate.label
             );
         }
         suits(config, &episode).with_context(|| path.display().to_string())?;
-        if episode.steps() >= protocol.context + protocol.horizon {
-            episodes.push(episode);
-        }
     }
-    let bar = ProgressBar::new(episodes.len() as u64);
-    bar.set_style(ProgressStyle::with_template(
-        "scoring {bar:30} {pos}/{len} episodes",
-    )?);
-    let report = eval::report(
-        &Inspector::new(model)?,
-        &episodes,
-        &mean_frame,
-        protocol,
-        || bar.inc(1),
-    )?;
-    bar.finish_and_clear();
-    let Some(report) = report else {
-        bail!(
-            "{}: no episode of split `{}` with {} images or more; choose another --split, --context or --horizon",
-            path.display(),
-            args.split.name(),
-            protocol.context + protocol.horizon
+    let enough = episode.steps() >= contest.protocol.images();
+    if !enough {
+        eprintln!(
+            "left out: episode `{}` has {} images of {}",
+            episode.meta.id,
+            episode.steps(),
+            contest.protocol.images()
         );
-    };
-    let text = if args.json {
-        serde_json::to_string_pretty(&report)? + "\n"
-    } else {
-        markdown(&report)
-    };
-    say(&text)
+    }
+    Ok(enough.then_some(episode))
 }
 
-/// The report as a Markdown table.
-fn markdown(report: &Report) -> String {
-    let mut text = format!(
-        "`{}`, {} episodes, context {}, PSNR in dB, differences with paired 95 % bootstrap intervals\n\n\
-         | horizon | model | last frame held | mean frame | over held | over mean frame |\n\
-         | --: | --: | --: | --: | --: | --: |\n",
-        report.model, report.episodes, report.protocol.context
-    );
-    for row in &report.rows {
-        let interval = |i: crate::measure::bootstrap::Interval| {
-            format!("{:+.2} [{:+.2}, {:+.2}]", i.mean, i.low, i.high)
-        };
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "| {} | {:.2} | {:.2} | {:.2} | {} | {} |",
-            row.horizon,
-            row.model_db,
-            row.held_db,
-            row.mean_frame_db,
-            interval(row.over_held),
-            interval(row.over_mean_frame)
+/// Says and writes what the scores come to.
+fn conclude(
+    args: &EvalArgs,
+    contest: &Contest,
+    all: &[EpisodeScores],
+    dataset: &Dataset,
+) -> anyhow::Result<()> {
+    let Some(summary) = summarise(contest, all)? else {
+        bail!(
+            "{}: no episode of split `{}` with {} images or more; choose another --split, --context or --horizon",
+            dataset.name(),
+            args.split.name(),
+            contest.protocol.images()
         );
+    };
+    let text = markdown::markdown(&summary);
+    if let Some(out) = &args.out {
+        for table in tables::tables(contest, all, &summary) {
+            write_csv(&table, &out.join(format!("{}.csv", table.name)))?;
+            write_parquet(&table, &out.join(format!("{}.parquet", table.name)))?;
+        }
+        figures::write(contest, all, &summary, dataset, out)?;
+        crate::model::checkpoint::write_atomic(&out.join("tables.md"), text.as_bytes())?;
+        eprintln!("tables and figures: {}", out.display());
     }
-    text
+    if args.json {
+        return say(&(serde_json::to_string_pretty(&summary)? + "\n"));
+    }
+    say(&text)
 }

@@ -7,7 +7,8 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 pub use self::episodes::{EXPERT_MEANS, KEYS as EPISODE_KEYS, MEANS};
-use self::field::{Fields, number};
+pub(super) use self::field::Fields;
+use self::field::number;
 use super::output::Output;
 use super::step::{READINGS, Step, readings_of};
 use super::{ExportError, Run, Sink};

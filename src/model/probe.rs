@@ -3,10 +3,19 @@
 //! `p̂ = W μ + b` by least squares; covariance `P = W Σ Wᵀ + R_p`, with R_p the positive semidefinite part of the
 //! residuals' second moment less the mean of `W Σ Wᵀ` (D11): the residuals already contain the belief's own spread.
 
+mod hidden;
+mod linear;
+mod regressors;
+
+pub use self::hidden::Hidden;
+pub use self::linear::Linear;
+pub use self::regressors::{Readers, Regressors};
+
+use std::collections::HashMap;
 use std::path::Path;
 
 use candle_core::{DType, Device, Tensor};
-use nalgebra::{DMatrix, Matrix2, SymmetricEigen};
+use nalgebra::{Matrix2, SymmetricEigen};
 
 use super::checkpoint::{CheckpointError, first_line, read_tensors, write_tensors};
 use super::trace::GaussianTrace;
@@ -31,39 +40,50 @@ pub struct Positions {
     pub truth: Vec<[f32; 2]>,
 }
 
+/// What is read from what: rows of inputs and of the outputs they should give.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pairs {
+    /// Numbers of an input.
+    pub inputs: usize,
+    /// Numbers of an output.
+    pub outputs: usize,
+    /// `(rows, inputs)` row major.
+    pub x: Vec<f32>,
+    /// `(rows, outputs)` row major.
+    pub y: Vec<f32>,
+}
+
+impl Pairs {
+    /// Rows.
+    pub fn len(&self) -> usize {
+        self.x.len() / self.inputs.max(1)
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Row by row.
+    pub fn iter(&self) -> impl Iterator<Item = (&[f32], &[f32])> {
+        let outputs = self.y.chunks_exact(self.outputs.max(1));
+        self.x.chunks_exact(self.inputs.max(1)).zip(outputs)
+    }
+}
+
 impl Probe {
     /// W and b by least squares on `fit`, R_p on `held_out`. None with fewer beliefs than latents.
     pub fn fit(fit: &Positions, held_out: &Positions) -> Option<Self> {
-        let latent = fit.beliefs.latent;
-        let rows = fit.truth.len();
-        if rows <= latent {
-            return None;
-        }
-        let mut normal = DMatrix::<f64>::zeros(latent + 1, latent + 1);
-        let mut right = DMatrix::<f64>::zeros(latent + 1, 2);
-        for (i, truth) in fit.truth.iter().enumerate() {
-            let (mean, _) = fit.beliefs.row(i);
-            let features = || mean.iter().map(|&m| f64::from(m)).chain([1.0]);
-            for (r, a) in features().enumerate() {
-                for (c, b) in features().enumerate() {
-                    normal[(r, c)] += a * b;
-                }
-                right[(r, 0)] += a * f64::from(truth[0]);
-                right[(r, 1)] += a * f64::from(truth[1]);
-            }
-        }
-        // Latents that never move leave the normal equations singular; a ridge far below any signal settles them.
-        for i in 0..=latent {
-            normal[(i, i)] += 1e-6 * rows as f64;
-        }
-        let solution = normal.cholesky()?.solve(&right);
-        let weights = (0..2)
-            .flat_map(|axis| (0..latent).map(move |d| (d, axis)))
-            .map(|at| solution[at] as f32)
-            .collect();
+        let pairs = Pairs {
+            inputs: fit.beliefs.latent,
+            outputs: 2,
+            x: fit.beliefs.mean.clone(),
+            y: fit.truth.as_flattened().to_vec(),
+        };
+        let Linear { weight, bias } = Linear::fit(&pairs)?;
         let mut probe = Self {
-            weights,
-            bias: [solution[(latent, 0)] as f32, solution[(latent, 1)] as f32],
+            weights: weight,
+            bias: [bias[0], bias[1]],
             residual: [0.0; 3],
         };
         probe.residual = probe.unexplained(held_out);
@@ -121,8 +141,12 @@ impl Probe {
         out
     }
 
-    /// Writes it as safetensors.
-    pub fn write(&self, path: &Path) -> Result<(), CheckpointError> {
+    /// Writes it as safetensors, and regressors beside it where there are any.
+    pub fn write(
+        &self,
+        path: &Path,
+        regressors: Option<&Regressors>,
+    ) -> Result<(), CheckpointError> {
         let refuse = |error: candle_core::Error| CheckpointError::Weights {
             path: path.to_owned(),
             what: error.to_string(),
@@ -131,47 +155,27 @@ impl Probe {
             Tensor::from_slice(numbers, shape, &Device::Cpu).map_err(refuse)
         };
         let latent = self.weights.len() / 2;
-        write_tensors(
-            path,
-            vec![
-                (
-                    "linear.weight".to_owned(),
-                    tensor(&self.weights, &[2, latent])?,
-                ),
-                ("linear.bias".to_owned(), tensor(&self.bias, &[2])?),
-                (
-                    "residual_covariance".to_owned(),
-                    tensor(&self.residual, &[3])?,
-                ),
-            ],
-        )
+        let mut tensors = vec![
+            (
+                "linear.weight".to_owned(),
+                tensor(&self.weights, &[2, latent])?,
+            ),
+            ("linear.bias".to_owned(), tensor(&self.bias, &[2])?),
+            (
+                "residual_covariance".to_owned(),
+                tensor(&self.residual, &[3])?,
+            ),
+        ];
+        if let Some(regressors) = regressors {
+            tensors.extend(regressors.tensors().map_err(refuse)?);
+        }
+        write_tensors(path, tensors)
     }
 
     /// Reads what [`Self::write`] wrote, for a model of `latent` dimensions.
     pub fn read(path: &Path, latent: usize) -> Result<Self, CheckpointError> {
         let tensors = read_tensors(path)?;
-        let numbers = |name: &str, len: usize| -> Result<Vec<f32>, CheckpointError> {
-            let refuse = |what: String| CheckpointError::Weights {
-                path: path.to_owned(),
-                what,
-            };
-            let tensor = tensors
-                .get(name)
-                .ok_or_else(|| refuse(format!("tensor `{name}` is missing")))?;
-            let flat = tensor
-                .to_dtype(DType::F32)
-                .and_then(|t| t.flatten_all())
-                .and_then(|t| t.to_vec1::<f32>());
-            let flat = flat.map_err(|error| refuse(first_line(&error)))?;
-            if flat.len() == len && flat.iter().all(|v| v.is_finite()) {
-                Ok(flat)
-            } else {
-                Err(refuse(format!(
-                    "tensor `{name}` must have {len} finite numbers, has {}",
-                    flat.len()
-                )))
-            }
-        };
+        let numbers = |name: &str, len: usize| numbers(&tensors, path, name, len);
         let weights = numbers("linear.weight", 2 * latent)?;
         let bias = numbers("linear.bias", 2)?;
         let residual = numbers("residual_covariance", 3)?;
@@ -180,6 +184,35 @@ impl Probe {
             bias: [bias[0], bias[1]],
             residual: [residual[0], residual[1], residual[2]],
         })
+    }
+}
+
+/// The numbers of the tensor of that name, `len` of them and all finite.
+fn numbers(
+    tensors: &HashMap<String, Tensor>,
+    path: &Path,
+    name: &str,
+    len: usize,
+) -> Result<Vec<f32>, CheckpointError> {
+    let refuse = |what: String| CheckpointError::Weights {
+        path: path.to_owned(),
+        what,
+    };
+    let tensor = tensors
+        .get(name)
+        .ok_or_else(|| refuse(format!("tensor `{name}` is missing")))?;
+    let flat = tensor
+        .to_dtype(DType::F32)
+        .and_then(|t| t.flatten_all())
+        .and_then(|t| t.to_vec1::<f32>());
+    let flat = flat.map_err(|error| refuse(first_line(&error)))?;
+    if flat.len() == len && flat.iter().all(|v| v.is_finite()) {
+        Ok(flat)
+    } else {
+        Err(refuse(format!(
+            "tensor `{name}` must have {len} finite numbers, has {}",
+            flat.len()
+        )))
     }
 }
 

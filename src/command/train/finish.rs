@@ -10,11 +10,12 @@ use serde_json::{Value, json};
 use super::sets::Sets;
 use crate::data::{Dataset, Episodes};
 use crate::episode::{Episode, EpisodeSource};
+use crate::eval::regression;
 use crate::model::Model;
 use crate::model::checkpoint::{MEAN_FRAME, PROBE, REPORT, write_atomic};
 use crate::model::inspect::Inspector;
 use crate::model::observation::observe;
-use crate::model::probe::{Positions, Probe};
+use crate::model::probe::{Positions, Probe, Regressors};
 use crate::model::trace::{Alphas, GaussianTrace};
 use crate::train::metrics::METRICS;
 use crate::train::state::State;
@@ -99,12 +100,23 @@ fn fit_probe(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<Value>
     let Some(probe) = Probe::fit(&train, held_out) else {
         return Ok(Value::Null);
     };
-    probe.write(&folder.join(PROBE))?;
+    let regressors = regressors(&inspector, sets.train())?;
+    probe.write(&folder.join(PROBE), regressors.as_ref())?;
     Ok(json!({
         "fitted_on": "train",
         "residual_covariance_on": split,
         "rmse_filtered_cm": { "train": rmse_cm(&probe, &train), "val": rmse_cm(&probe, &val) },
     }))
+}
+
+/// Fits the pose regressors on `train`; none with too few beliefs.
+fn regressors(
+    inspector: &Inspector<&Model>,
+    train: Episodes,
+) -> anyhow::Result<Option<Regressors>> {
+    let episodes = (0..train.len()).into_par_iter();
+    let latents = regression::latents(inspector, episodes.map(|i| anyhow::Ok(train.get(i)?)))?;
+    Ok(latents.fit()?)
 }
 
 /// Root mean squared distance from the recorded positions; none for none.

@@ -2,14 +2,14 @@
 
 /// A line, field by field.
 #[derive(Default)]
-pub(super) struct Fields {
+pub(in crate::export) struct Fields {
     line: String,
     begun: bool,
 }
 
 impl Fields {
     /// Appends a field, in quotes where it needs them.
-    pub(super) fn push(&mut self, text: &str) {
+    pub(in crate::export) fn push(&mut self, text: &str) {
         if self.begun {
             self.line.push(',');
         }
@@ -24,7 +24,7 @@ impl Fields {
     }
 
     /// The line with its end.
-    pub(super) fn into_line(mut self) -> String {
+    pub(in crate::export) fn into_line(mut self) -> String {
         self.line.push('\n');
         self.line
     }

@@ -1,0 +1,118 @@
+//! The paper's figures, into the folder of the tables.
+
+use std::path::Path;
+
+use crate::data::Dataset;
+use crate::episode::EpisodeSource;
+use crate::eval::prediction::open_loop;
+use crate::eval::score::{Contest, EpisodeScores};
+use crate::eval::setting::Setting;
+use crate::eval::summary::{Summary, extremes};
+use crate::export::figures::{self, Frames, Strip};
+
+/// Episodes of either side in the strips.
+const STRIPS: usize = 3;
+
+/// Writes them all.
+pub fn write(
+    contest: &Contest,
+    all: &[EpisodeScores],
+    summary: &Summary,
+    dataset: &Dataset,
+    out: &Path,
+) -> anyhow::Result<()> {
+    figures::horizons(summary).save(out, "horizons")?;
+    if let Some(plot) = figures::ellipses(summary) {
+        plot.save(out, "ellipses")?;
+    }
+    if let Some(plot) = figures::contact(summary) {
+        plot.save(out, "contact")?;
+    }
+    let Some([first, second]) = rivals(contest) else {
+        return Ok(());
+    };
+    let labels = [first, second].map(|place| contest.subjects[place].label.clone());
+    let [worst, best] = extremes(all, [first, second], STRIPS);
+    let title = format!(
+        "The worst of {0} against {1}, then the worst of {1} against {0}",
+        labels[0], labels[1]
+    );
+    let mut strips = Vec::new();
+    for (episodes, label) in [(worst, &labels[0]), (best, &labels[1])] {
+        for index in episodes {
+            strips.push(strip(
+                contest,
+                &all[index],
+                [first, second],
+                dataset,
+                label,
+            )?);
+        }
+    }
+    let side = contest.candidates[0].inspector.model().config.frame_size;
+    figures::strips(&title, &strips, side).save(out, "strips")?;
+    Ok(())
+}
+
+/// The rows the strips compare: `v` and `vhp` as the paper does, else the first two models as trained.
+fn rivals(contest: &Contest) -> Option<[usize; 2]> {
+    let trained: Vec<usize> = (0..contest.subjects.len())
+        .filter(|&i| contest.subjects[i].setting == Setting::default())
+        .collect();
+    let named = |name: &str| {
+        let is = |&&i: &&usize| contest.candidate(&contest.subjects[i]).group == name;
+        trained.iter().find(is).copied()
+    };
+    let others = [*trained.first()?, *trained.get(1)?];
+    Some(
+        named("v")
+            .zip(named("vhp"))
+            .map_or(others, |(v, vhp)| [v, vhp]),
+    )
+}
+
+fn strip(
+    contest: &Contest,
+    scores: &EpisodeScores,
+    rivals: [usize; 2],
+    dataset: &Dataset,
+    worse: &str,
+) -> anyhow::Result<Strip> {
+    let protocol = contest.protocol;
+    let layout = contest.candidates[0].inspector.model().config.layout();
+    let mut metas = dataset.metas().iter();
+    let index = metas
+        .position(|meta| meta.id == scores.episode)
+        .unwrap_or_default();
+    let episode = dataset.load(index, layout)?;
+    let mut rows = vec![Frames {
+        label: "truth".to_owned(),
+        frames: episode.frames[protocol.context..protocol.images()]
+            .iter()
+            .map(|frame| frame.pixels.clone())
+            .collect(),
+    }];
+    let mut errors = Vec::new();
+    for place in rivals {
+        let subject = &contest.subjects[place];
+        let pixels = open_loop(&contest.candidate(subject).inspector, &episode, protocol)?;
+        let grey = |frame: &[f32]| frame.iter().map(|&p| (p * 255.0).round() as u8).collect();
+        let size = layout.frame_size * layout.frame_size;
+        rows.push(Frames {
+            label: subject.label.clone(),
+            frames: pixels.chunks_exact(size).map(grey).collect(),
+        });
+        let error = &scores.subjects[place].frames.squared_error;
+        let mean = error.iter().sum::<f64>() / error.len().max(1) as f64;
+        errors.push(format!("{} {mean:.1}", subject.label));
+    }
+    Ok(Strip {
+        title: format!(
+            "{}: {worse} does worst; mean squared error {}",
+            scores.episode,
+            errors.join(", ")
+        ),
+        rows,
+        first: protocol.context + 1,
+    })
+}

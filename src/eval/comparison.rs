@@ -1,0 +1,315 @@
+//! Which of two is better, on the same episodes, and whether that can be said at all.
+
+use super::score::{Contest, EpisodeScores, FrameScores};
+use crate::measure::bootstrap::{Interval, mean_95};
+use serde::Serialize;
+
+/// One side of a comparison: an average over seeds where there are several.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Side {
+    /// How it is called.
+    pub label: String,
+    /// Scores of each seed, in the order of the seeds: for each an episode's means over the horizon.
+    pub seeds: Vec<Vec<Means>>,
+}
+
+/// Means over the horizon of an episode.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Means {
+    /// Sum over pixels.
+    pub squared_error: f64,
+    /// Data range 1.
+    pub ssim: f64,
+    /// In dB.
+    pub psnr_db: f64,
+}
+
+impl Means {
+    /// Of an episode's scores.
+    pub fn of(scores: &FrameScores) -> Self {
+        let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
+        Self {
+            squared_error: mean(&scores.squared_error),
+            ssim: mean(&scores.ssim),
+            psnr_db: mean(&scores.psnr_db),
+        }
+    }
+}
+
+/// What can be said.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Finding {
+    /// The first is better, and the interval leaves out zero.
+    Holds,
+    /// It is the other way round, and the interval leaves out zero.
+    Reversed,
+    /// The interval has zero in it.
+    Open,
+}
+
+impl Finding {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Reversed => "the other way round",
+            Self::Open => "cannot be told",
+        }
+    }
+}
+
+/// The first side less the second, paired over episodes.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Claimed to be better.
+    pub better: String,
+    /// Than which.
+    pub worse: String,
+    /// Episodes.
+    pub episodes: usize,
+    /// Difference of PSNR in dB, with its 95 % bootstrap interval.
+    pub psnr_db: Interval,
+    /// Of structural similarity.
+    pub ssim: Interval,
+    /// Of squared error, a sum over pixels: negative where the first is better.
+    pub squared_error: Interval,
+    /// Part of the episodes in which the first has the higher PSNR.
+    pub won: f64,
+    /// Seeds in which it has the higher mean PSNR, of how many pairs of seeds; none for a single one.
+    pub seeds: Option<[usize; 2]>,
+    /// By PSNR.
+    pub finding: Finding,
+}
+
+impl Comparison {
+    /// In words.
+    pub fn sentence(&self) -> String {
+        let Self { better, worse, .. } = self;
+        let Interval { mean, low, high } = self.psnr_db;
+        let of = format!("{} episodes", self.episodes);
+        let seeds = self.seeds.map_or_else(String::new, |[won, all]| {
+            format!("; {won} of {all} seeds agree")
+        });
+        match self.finding {
+            Finding::Holds => format!(
+                "`{better}` predicts better than `{worse}`, by {mean:.2} dB [{low:.2}, {high:.2}] on {of}: holds{seeds}"
+            ),
+            Finding::Reversed => format!(
+                "`{better}` predicts worse than `{worse}`, by {:.2} dB [{:.2}, {:.2}] on {of}: does not hold, it is the other way round{seeds}",
+                -mean, -high, -low
+            ),
+            Finding::Open => format!(
+                "`{better}` and `{worse}` cannot be told apart, {mean:+.2} dB [{low:+.2}, {high:+.2}] on {of}: does not hold{seeds}"
+            ),
+        }
+    }
+}
+
+/// Compares two sides over the same episodes. None without an episode.
+pub fn compare(first: &Side, second: &Side) -> Option<Comparison> {
+    let average = |side: &Side, episode: usize| -> Option<Means> {
+        let seeds: Vec<&Means> = side
+            .seeds
+            .iter()
+            .map(|s| s.get(episode))
+            .collect::<Option<_>>()?;
+        let mean = |of: fn(&Means) -> f64| {
+            seeds.iter().map(|m| of(m)).sum::<f64>() / seeds.len().max(1) as f64
+        };
+        Some(Means {
+            squared_error: mean(|m| m.squared_error),
+            ssim: mean(|m| m.ssim),
+            psnr_db: mean(|m| m.psnr_db),
+        })
+    };
+    let episodes = first.seeds.first()?.len();
+    let pairs: Vec<(Means, Means)> = (0..episodes)
+        .map(|e| average(first, e).zip(average(second, e)))
+        .collect::<Option<_>>()?;
+    let difference =
+        |of: fn(&Means) -> f64| -> Vec<f64> { pairs.iter().map(|(a, b)| of(a) - of(b)).collect() };
+    let psnr = difference(|m| m.psnr_db);
+    let psnr_db = mean_95(&psnr, 0)?;
+    let finding = match psnr_db {
+        Interval { low, .. } if low > 0.0 => Finding::Holds,
+        Interval { high, .. } if high < 0.0 => Finding::Reversed,
+        _ => Finding::Open,
+    };
+    Some(Comparison {
+        better: first.label.clone(),
+        worse: second.label.clone(),
+        episodes,
+        psnr_db,
+        ssim: mean_95(&difference(|m| m.ssim), 0)?,
+        squared_error: mean_95(&difference(|m| m.squared_error), 0)?,
+        won: psnr.iter().filter(|&&d| d > 0.0).count() as f64 / episodes as f64,
+        seeds: agreement(first, second),
+        finding,
+    })
+}
+
+/// In how many pairs of seeds the first side has the higher mean PSNR; a side of one seed stands against each of the
+/// other's.
+fn agreement(first: &Side, second: &Side) -> Option<[usize; 2]> {
+    let mean = |seed: &Vec<Means>| seed.iter().map(|m| m.psnr_db).sum::<f64>();
+    let count = first.seeds.len().max(second.seeds.len());
+    let even = |side: &Side| [1, count].contains(&side.seeds.len());
+    if count < 2 || !even(first) || !even(second) {
+        return None;
+    }
+    let at = |side: &Side, i: usize| side.seeds.get(i % side.seeds.len()).map(mean);
+    let won = (0..count).filter(|&i| at(first, i) > at(second, i)).count();
+    Some([won, count])
+}
+
+/// What the paper claims, the first better than the second; and of ours, that a product survives being switched.
+const CLAIMS: [[&str; 2]; 8] = [
+    ["vp", "v"],
+    ["vh", "v"],
+    ["vhp", "v"],
+    ["vhp", "vp"],
+    ["vhp", "vh"],
+    ["vhp", "vhp-c"],
+    ["vhp-c", "v"],
+    ["v-h-p", "vhp"],
+];
+
+/// The names of the predictors that anybody could write.
+pub const TRIVIAL: [&str; 2] = ["last frame held", "mean frame"];
+
+/// Every side of a contest: rows of one group and setting together, then the trivial predictors.
+pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
+    let mut sides: Vec<Side> = Vec::new();
+    for (place, subject) in contest.subjects.iter().enumerate() {
+        let group = &contest.candidate(subject).group;
+        let label = match subject.setting.name.as_str() {
+            "" => group.clone(),
+            name => format!("{group}, {name}"),
+        };
+        let means = all
+            .iter()
+            .filter_map(|episode| episode.subjects.get(place))
+            .map(|scores| Means::of(&scores.frames))
+            .collect();
+        match sides.iter_mut().find(|side| side.label == label) {
+            Some(side) => side.seeds.push(means),
+            None => sides.push(Side {
+                label,
+                seeds: vec![means],
+            }),
+        }
+    }
+    let [held, mean] = TRIVIAL;
+    let of = |scores: fn(&EpisodeScores) -> &FrameScores| {
+        vec![all.iter().map(|e| Means::of(scores(e))).collect()]
+    };
+    sides.push(Side {
+        label: held.to_owned(),
+        seeds: of(|e| &e.held),
+    });
+    sides.push(Side {
+        label: mean.to_owned(),
+        seeds: of(|e| &e.mean_frame),
+    });
+    sides
+}
+
+/// The paper's claims among the sides, each product against itself without the prior, and each row against the
+/// trivial predictors; a set without any of the paper's names has each row against the first.
+pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
+    let find = |label: &str| sides.iter().find(|side| side.label == label);
+    let is_trivial = |side: &&Side| TRIVIAL.contains(&side.label.as_str());
+    let mut pairs: Vec<(&Side, &Side)> = CLAIMS
+        .iter()
+        .filter_map(|[a, b]| find(a).zip(find(b)))
+        .collect();
+    let without = |side: &Side| find(&format!("{}, prior off", side.label));
+    pairs.extend(sides.iter().filter_map(|side| Some((side, without(side)?))));
+    let rows: Vec<&Side> = sides.iter().filter(|side| !is_trivial(side)).collect();
+    if pairs.is_empty() {
+        pairs.extend(rows.iter().skip(1).map(|&row| (row, rows[0])));
+    }
+    for trivial in sides.iter().filter(is_trivial) {
+        pairs.extend(rows.iter().map(|&row| (row, trivial)));
+    }
+    pairs
+        .into_iter()
+        .filter_map(|(a, b)| compare(a, b))
+        .collect()
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test may stop here")]
+mod tests {
+    use super::*;
+
+    fn side(label: &str, seeds: &[fn(usize) -> f64]) -> Side {
+        let seed = |psnr: &fn(usize) -> f64| {
+            let of = |i| Means {
+                psnr_db: psnr(i),
+                ..Means::default()
+            };
+            (0..40).map(of).collect()
+        };
+        Side {
+            label: label.to_owned(),
+            seeds: seeds.iter().map(seed).collect(),
+        }
+    }
+
+    #[test]
+    fn a_finding_is_what_the_interval_says() {
+        // Episodes differ by far more than the models: only pairs can tell.
+        let base: fn(usize) -> f64 = |i| 20.0 + 5.0 * (i as f64).sin();
+        let better: fn(usize) -> f64 =
+            |i| 20.5 + 5.0 * (i as f64).sin() + 0.1 * (i as f64 * 0.3).cos();
+        let noisy: fn(usize) -> f64 =
+            |i| 20.0 + 5.0 * (i as f64).sin() + if i % 2 == 0 { 1.0 } else { -1.0 };
+        let (a, b, c) = (
+            side("a", &[better]),
+            side("b", &[base]),
+            side("c", &[noisy]),
+        );
+        let found = compare(&a, &b).unwrap();
+        assert_eq!((found.finding, found.seeds), (Finding::Holds, None));
+        assert!((found.psnr_db.mean - 0.5).abs() < 0.05 && (found.won - 1.0).abs() < 1e-12);
+        assert!(found.sentence().ends_with("holds"), "{}", found.sentence());
+        assert_eq!(compare(&b, &a).unwrap().finding, Finding::Reversed);
+        let open = compare(&c, &b).unwrap();
+        assert_eq!(open.finding, Finding::Open);
+        assert!(open.sentence().contains("cannot be told apart"));
+    }
+
+    #[test]
+    fn seeds_are_averaged_and_counted() {
+        let (low, high): (fn(usize) -> f64, fn(usize) -> f64) = (|_| 19.0, |_| 21.0);
+        let one: fn(usize) -> f64 = |_| 20.0;
+        let found = compare(&side("a", &[low, high, high]), &side("b", &[one])).unwrap();
+        assert_eq!(found.seeds, Some([2, 3]));
+        assert!((found.psnr_db.mean - 1.0 / 3.0).abs() < 1e-9);
+        assert_eq!(
+            compare(&side("a", &[low, high]), &side("b", &[one; 3]))
+                .unwrap()
+                .seeds,
+            None
+        );
+        assert_eq!(compare(&side("a", &[]), &side("b", &[one])), None);
+    }
+
+    #[test]
+    fn the_papers_claims_are_asked_by_name() {
+        let flat: fn(usize) -> f64 = |_| 20.0;
+        let sides =
+            ["v", "vhp", "vhp, prior off", TRIVIAL[0], TRIVIAL[1]].map(|l| side(l, &[flat]));
+        let asked: Vec<[String; 2]> = comparisons(&sides)
+            .into_iter()
+            .map(|c| [c.better, c.worse])
+            .collect();
+        assert_eq!(asked[0], ["vhp", "v"]);
+        assert_eq!(asked[1], ["vhp", "vhp, prior off"]);
+        assert_eq!(asked.len(), 2 + 2 * 3);
+        let own = ["mine", "yours", TRIVIAL[0]].map(|l| side(l, &[flat]));
+        assert_eq!(comparisons(&own)[0].better, "yours");
+    }
+}

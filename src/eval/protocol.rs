@@ -1,0 +1,38 @@
+//! How much is seen and how much is predicted.
+
+use serde::{Deserialize, Serialize};
+
+/// c images are seen with every expert on; the next h are predicted from the known controls alone.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Protocol {
+    /// c, counted in images: with stacked frames there are fewer beliefs.
+    pub context: usize,
+    /// h.
+    pub horizon: usize,
+}
+
+impl Protocol {
+    /// The paper's on its synthetic set.
+    pub const SYNTHETIC: Self = Self {
+        context: 4,
+        horizon: 11,
+    };
+    /// The paper's on the MIT set.
+    pub const MIT: Self = Self {
+        context: 5,
+        horizon: 37,
+    };
+
+    /// The paper's 4 and 11, cut to an episode of `steps` images.
+    pub fn for_episode(steps: usize) -> Self {
+        Self {
+            context: 4,
+            horizon: 11.min(steps.saturating_sub(4)),
+        }
+    }
+
+    /// Images that an episode must have.
+    pub fn images(self) -> usize {
+        self.context + self.horizon
+    }
+}

@@ -1,0 +1,342 @@
+//! Where the object is, read from beliefs: the paper's ellipse figure and Table 3.
+//!
+//! Two numbers, never mixed: regressors that were fitted on the training split, and regressors fitted on the very
+//! episodes that are scored, as the released notebook does it.
+
+use candle_core::Result;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::prediction::{encode, roll};
+use super::protocol::Protocol;
+use super::score::{Contest, EpisodeScores, Subject};
+use super::spread::Spread;
+use crate::episode::Episode;
+use crate::model::Model;
+use crate::model::inspect::Inspector;
+use crate::model::probe::{Pairs, Readers, Regressors};
+use crate::model::trace::{Alphas, GaussianTrace};
+
+/// What is read: x, y in metres, sine and cosine of yaw.
+pub const OUTPUTS: usize = 4;
+
+/// The beliefs that are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Beliefs {
+    /// They saw every sensor up to their own image.
+    Filtered,
+    /// They saw the context only.
+    Predicted,
+}
+
+impl Beliefs {
+    /// `filtered` or `predicted`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Filtered => "filtered",
+            Self::Predicted => "predicted",
+        }
+    }
+}
+
+/// How they are read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Regressor {
+    /// Least squares.
+    Linear,
+    /// One hidden layer of 50.
+    Network,
+}
+
+impl Regressor {
+    /// `least squares` or `network`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "least squares",
+            Self::Network => "network",
+        }
+    }
+}
+
+/// What the regressor was fitted on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FittedOn {
+    /// The model's training split: the episodes scored are new to it.
+    Train,
+    /// The scored episodes themselves, as the released notebook has it.
+    Scored,
+}
+
+impl FittedOn {
+    /// `train` or `scored split`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Train => "train",
+            Self::Scored => "scored split",
+        }
+    }
+}
+
+/// Errors of one regressor, in centimetres.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PoseErrors {
+    /// The row.
+    pub subject: String,
+    /// Read from which beliefs.
+    pub beliefs: Beliefs,
+    /// By what.
+    pub regressor: Regressor,
+    /// Fitted on what.
+    pub fitted_on: FittedOn,
+    /// Beliefs that were read.
+    pub count: usize,
+    /// Root of the mean squared distance.
+    pub rmse_cm: f64,
+    /// Absolute errors along x and y.
+    pub absolute_cm: [Spread; 2],
+    /// Covariance of the absolute errors as xx, xy, yy, in cm².
+    pub covariance_cm2: [f32; 3],
+    /// Absolute error of yaw in degrees.
+    pub yaw_deg: Option<Spread>,
+}
+
+/// Filtered and predicted latents of episodes with the poses they should give.
+#[derive(Clone, Debug, Default)]
+pub struct Latents {
+    /// Beliefs that saw everything.
+    pub filtered: Pairs,
+    /// Predicted ones.
+    pub predicted: Pairs,
+}
+
+impl Latents {
+    fn new(latent: usize) -> Self {
+        let pairs = Pairs {
+            inputs: latent,
+            outputs: OUTPUTS,
+            ..Pairs::default()
+        };
+        Self {
+            filtered: pairs.clone(),
+            predicted: pairs,
+        }
+    }
+
+    /// Takes an episode's latents; `poses` has one an image, the first belief is of image `stack`, the first prediction
+    /// of image `context`.
+    fn push(
+        &mut self,
+        filtered: &[f32],
+        predicted: &[f32],
+        poses: &[[f32; 3]],
+        [stack, context]: [usize; 2],
+    ) {
+        for (pairs, latents, first) in [
+            (&mut self.filtered, filtered, stack),
+            (&mut self.predicted, predicted, context),
+        ] {
+            let latents = latents.chunks_exact(pairs.inputs.max(1));
+            for (latent, [x, y, yaw]) in latents.zip(poses.iter().skip(first)) {
+                pairs.x.extend_from_slice(latent);
+                pairs.y.extend([*x, *y, yaw.sin(), yaw.cos()]);
+            }
+        }
+    }
+
+    /// Fits every regressor; none with fewer beliefs than latents.
+    pub fn fit(&self) -> Result<Option<Regressors>> {
+        let fitted = Readers::fit(&self.filtered)?.zip(Readers::fit(&self.predicted)?);
+        Ok(fitted.map(|(filtered, predicted)| Regressors {
+            filtered,
+            predicted,
+        }))
+    }
+}
+
+/// The latents of training episodes as a regressor sees them, each rolled out as [`Protocol::for_episode`] says; those
+/// without a recorded pose are left out.
+pub fn latents<E>(
+    inspector: &Inspector<&Model>,
+    episodes: impl IndexedParallelIterator<Item = std::result::Result<std::sync::Arc<Episode>, E>>,
+) -> std::result::Result<Latents, E>
+where
+    E: From<candle_core::Error> + Send,
+{
+    let config = &inspector.model().config;
+    let one = |episode: &Episode| -> Result<Option<[GaussianTrace; 2]>> {
+        let protocol = Protocol::for_episode(episode.steps());
+        if episode.object.is_none() || protocol.horizon == 0 {
+            return Ok(None);
+        }
+        let experts = encode(inspector, episode)?;
+        let alphas = Alphas::trained(experts.controls.len() + 1, config.switches());
+        let beliefs = inspector.filter(&experts, &alphas)?;
+        let rolled = roll(inspector, &experts, &beliefs, protocol)?;
+        Ok(Some([beliefs.posterior, rolled.gaussians]))
+    };
+    let each: Vec<_> = episodes
+        .map(|episode| {
+            let episode = episode?;
+            let poses = episode.object.iter().flatten().map(|p| [p.x, p.y, p.yaw]);
+            let context = Protocol::for_episode(episode.steps()).context;
+            Ok((one(&episode)?, poses.collect::<Vec<_>>(), context))
+        })
+        .collect::<std::result::Result<_, E>>()?;
+    let mut all = Latents::new(config.latent);
+    for (latents, poses, context) in each {
+        if let Some([filtered, predicted]) = latents {
+            all.push(
+                &filtered.mean,
+                &predicted.mean,
+                &poses,
+                [config.frame_stack, context],
+            );
+        }
+    }
+    Ok(all)
+}
+
+/// Reads every row's beliefs in every way there is. Empty where no pose was recorded.
+pub fn errors(contest: &Contest, all: &[EpisodeScores]) -> Result<Vec<PoseErrors>> {
+    let rows: Vec<Vec<PoseErrors>> = contest
+        .subjects
+        .par_iter()
+        .enumerate()
+        .map(|(place, subject)| of_row(contest, subject, place, all))
+        .collect::<Result<_>>()?;
+    Ok(rows.into_iter().flatten().collect())
+}
+
+fn of_row(
+    contest: &Contest,
+    subject: &Subject,
+    place: usize,
+    all: &[EpisodeScores],
+) -> Result<Vec<PoseErrors>> {
+    let candidate = contest.candidate(subject);
+    let config = &candidate.inspector.model().config;
+    let mut latents = Latents::new(config.latent);
+    for episode in all {
+        if let (Some(poses), Some(scores)) = (&episode.poses, episode.subjects.get(place)) {
+            let firsts = [config.frame_stack, contest.protocol.context];
+            latents.push(&scores.filtered, &scores.predicted, poses, firsts);
+        }
+    }
+    let own = latents.fit()?;
+    let fits = [
+        (FittedOn::Train, candidate.regressors.as_ref()),
+        (FittedOn::Scored, own.as_ref()),
+    ];
+    let mut rows = Vec::new();
+    for (fitted_on, regressors) in fits {
+        let Some(regressors) = regressors else {
+            continue;
+        };
+        for (beliefs, readers, pairs) in [
+            (Beliefs::Filtered, &regressors.filtered, &latents.filtered),
+            (
+                Beliefs::Predicted,
+                &regressors.predicted,
+                &latents.predicted,
+            ),
+        ] {
+            for regressor in [Regressor::Linear, Regressor::Network] {
+                rows.extend(read(pairs, readers, regressor).map(|errors| PoseErrors {
+                    subject: subject.label.clone(),
+                    beliefs,
+                    fitted_on,
+                    ..errors
+                }));
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// Errors of one regressor on some pairs.
+fn read(pairs: &Pairs, readers: &Readers, regressor: Regressor) -> Option<PoseErrors> {
+    let mut absolute = [Vec::new(), Vec::new()];
+    let mut yaw = Vec::new();
+    let mut squares = 0.0;
+    for (latent, truth) in pairs.iter() {
+        let says = match regressor {
+            Regressor::Linear => readers.linear.read(latent),
+            Regressor::Network => readers.network.read(latent),
+        };
+        let error = |k: usize| 100.0 * f64::from(says[k] - truth[k]);
+        let (x, y) = (error(0), error(1));
+        squares += x * x + y * y;
+        absolute[0].push(x.abs());
+        absolute[1].push(y.abs());
+        if let (&[_, _, sin, cos], &[_, _, true_sin, true_cos]) = (&says[..], truth) {
+            // The angle between the two directions, so that a full turn is none.
+            let across = true_sin * cos - true_cos * sin;
+            let along = true_cos * cos + true_sin * sin;
+            yaw.push(f64::from(across.atan2(along).abs().to_degrees()));
+        }
+    }
+    let [x, y] = [Spread::of(&absolute[0])?, Spread::of(&absolute[1])?];
+    let points: Vec<[f32; 2]> = absolute[0]
+        .iter()
+        .zip(&absolute[1])
+        .map(|(&x, &y)| [x as f32, y as f32])
+        .collect();
+    Some(PoseErrors {
+        subject: String::new(),
+        beliefs: Beliefs::Filtered,
+        regressor,
+        fitted_on: FittedOn::Train,
+        count: pairs.len(),
+        rmse_cm: (squares / pairs.len() as f64).sqrt(),
+        absolute_cm: [x, y],
+        covariance_cm2: crate::measure::spread::sample_covariance(&points).unwrap_or_default(),
+        yaw_deg: Spread::of(&yaw),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn errors_are_those_of_a_known_offset() -> Result<()> {
+        // Latents that are the pose itself, read by a map that is off by 3 cm, 4 cm and 10 degrees.
+        let mut latents = Latents::new(4);
+        let poses: Vec<[f32; 3]> = (0..60)
+            .map(|i| {
+                [
+                    (i as f32 * 0.7).sin(),
+                    (i as f32 * 1.3).cos(),
+                    i as f32 * 0.4,
+                ]
+            })
+            .collect();
+        let own: Vec<f32> = poses
+            .iter()
+            .flat_map(|[x, y, a]| [*x, *y, a.sin(), a.cos()])
+            .collect();
+        latents.push(&own, &own[16..], &poses, [0, 4]);
+        assert_eq!((latents.filtered.len(), latents.predicted.len()), (60, 56));
+        let fitted = latents.fit()?.expect("enough");
+        let exact = read(&latents.filtered, &fitted.filtered, Regressor::Linear).expect("rows");
+        assert!(exact.rmse_cm < 1e-2, "{exact:?}");
+        let mut off = fitted.filtered.clone();
+        off.linear.bias[0] += 0.03;
+        off.linear.bias[1] -= 0.04;
+        let turn = 10.0_f32.to_radians();
+        for row in off.linear.weight.chunks_exact_mut(4).skip(2) {
+            let [sin, cos] = [row[2], row[3]];
+            row[2] = sin * turn.cos() - cos * turn.sin();
+            row[3] = cos * turn.cos() + sin * turn.sin();
+        }
+        let found = read(&latents.filtered, &off, Regressor::Linear).expect("rows");
+        assert!((found.rmse_cm - 5.0).abs() < 1e-2, "{found:?}");
+        assert!((found.absolute_cm[0].mean - 3.0).abs() < 1e-2 && found.absolute_cm[0].sd < 1e-2);
+        let yaw = found.yaw_deg.expect("yaw");
+        assert!((yaw.mean - 10.0).abs() < 0.2, "{yaw:?}");
+        Ok(())
+    }
+}

@@ -1,0 +1,204 @@
+//! The scores of one episode: what every table is made of.
+
+use candle_core::Result;
+use serde::{Deserialize, Serialize};
+
+use super::contact::shares;
+use super::credit::{self, Credit};
+use super::prediction::{encode, grey, roll, squared_error};
+use super::protocol::Protocol;
+use super::setting::Setting;
+use crate::episode::{Episode, Frame};
+use crate::measure::frame::psnr_db_from_mse;
+use crate::measure::ssim::ssim;
+use crate::model::inspect::Inspector;
+use crate::model::probe::{Probe, Regressors};
+
+/// A trained model, and what was fitted on its training split.
+#[derive(Debug)]
+pub struct Candidate {
+    /// How it is called: the model's name, with the seed or the folder where that is not enough.
+    pub label: String,
+    /// Candidates of one group differ in their seeds alone.
+    pub group: String,
+    /// The seed of its training; none where its report does not say.
+    pub seed: Option<u64>,
+    /// The model.
+    pub inspector: Inspector,
+    /// Its position probe.
+    pub probe: Option<Probe>,
+    /// Its pose regressors.
+    pub regressors: Option<Regressors>,
+}
+
+/// A candidate under a setting: a row of the tables.
+#[derive(Clone, Debug)]
+pub struct Subject {
+    /// The candidate's label, and the setting's name.
+    pub label: String,
+    /// Which candidate.
+    pub candidate: usize,
+    /// Under what.
+    pub setting: Setting,
+}
+
+/// What is compared, and how.
+#[derive(Debug)]
+pub struct Contest {
+    /// The models.
+    pub candidates: Vec<Candidate>,
+    /// The rows.
+    pub subjects: Vec<Subject>,
+    /// How much is seen and predicted.
+    pub protocol: Protocol,
+    /// Mean training frame in [0, 1], row major: the predictor that always says it.
+    pub mean_frame: Vec<f32>,
+}
+
+impl Contest {
+    /// The candidate of a row.
+    pub fn candidate(&self, subject: &Subject) -> &Candidate {
+        &self.candidates[subject.candidate]
+    }
+}
+
+/// Scores of predicted images, one a horizon.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FrameScores {
+    /// Sum over pixels of squared differences of values in [0, 1].
+    pub squared_error: Vec<f64>,
+    /// Structural similarity, data range 1.
+    pub ssim: Vec<f64>,
+    /// Peak signal-to-noise ratio in dB, data range 1.
+    pub psnr_db: Vec<f64>,
+}
+
+impl FrameScores {
+    /// Of predictions in [0, 1], one after another, against as many frames.
+    fn of<'a>(predicted: impl Iterator<Item = &'a [f32]>, truth: &[(Vec<f32>, usize)]) -> Self {
+        let mut scores = Self::default();
+        for (predicted, (truth, width)) in predicted.zip(truth) {
+            let error = squared_error(predicted, truth);
+            scores.squared_error.push(error);
+            scores
+                .ssim
+                .push(ssim(predicted, truth, *width).unwrap_or(f64::NAN));
+            let psnr = psnr_db_from_mse(error / truth.len() as f64);
+            scores.psnr_db.push(f64::from(psnr));
+        }
+        scores
+    }
+}
+
+/// What a row makes of an episode.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct SubjectScores {
+    /// Of the predicted images.
+    pub frames: FrameScores,
+    /// Means of the beliefs that saw everything, `(beliefs, Z)`.
+    pub filtered: Vec<f32>,
+    /// Means of the predicted beliefs, `(h, Z)`.
+    pub predicted: Vec<f32>,
+    /// What each sensor deserves of the result (D24), where the model stands every set of sensors and nothing is
+    /// switched or damaged.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub credit: Option<Credit>,
+    /// Precision share of each expert, the prior last, at each belief (D1); none without a product.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shares: Option<Vec<Vec<f32>>>,
+}
+
+/// Everything about an episode: a line of the score file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct EpisodeScores {
+    /// Its name.
+    pub episode: String,
+    /// x, y in metres and yaw in radians at each image; none if not recorded.
+    pub poses: Option<Vec<[f32; 3]>>,
+    /// Root-mean-square force in newtons over each image's window; empty if not recorded.
+    pub force_newtons: Vec<f32>,
+    /// Of the last seen frame, held.
+    pub held: FrameScores,
+    /// Of the mean training frame.
+    pub mean_frame: FrameScores,
+    /// One a row.
+    pub subjects: Vec<SubjectScores>,
+}
+
+/// The images to predict.
+fn targets(episode: &Episode, protocol: Protocol) -> Vec<(Vec<f32>, usize)> {
+    let frames = &episode.frames[protocol.context..protocol.images()];
+    frames
+        .iter()
+        .map(|frame: &Frame| (grey(frame), frame.width))
+        .collect()
+}
+
+/// Scores every row on an episode of `protocol.images()` images or more.
+pub fn score(contest: &Contest, episode: &Episode) -> Result<EpisodeScores> {
+    let protocol = contest.protocol;
+    if episode.steps() < protocol.images() {
+        candle_core::bail!(
+            "episode `{}` has {} images, {} are needed",
+            episode.meta.id,
+            episode.steps(),
+            protocol.images()
+        );
+    }
+    let truth = targets(episode, protocol);
+    let held = grey(&episode.frames[protocol.context - 1]);
+    let poses = episode.object.as_ref();
+    Ok(EpisodeScores {
+        episode: episode.meta.id.clone(),
+        poses: poses.map(|poses| poses.iter().map(|p| [p.x, p.y, p.yaw]).collect()),
+        force_newtons: (0..episode.steps())
+            .map_while(|t| episode.force_newtons(t))
+            .collect(),
+        held: FrameScores::of(std::iter::repeat(held.as_slice()), &truth),
+        mean_frame: FrameScores::of(std::iter::repeat(contest.mean_frame.as_slice()), &truth),
+        subjects: contest
+            .subjects
+            .iter()
+            .map(|subject| row(contest, subject, episode, &truth))
+            .collect::<Result<_>>()?,
+    })
+}
+
+/// Scores one row.
+fn row(
+    contest: &Contest,
+    subject: &Subject,
+    episode: &Episode,
+    truth: &[(Vec<f32>, usize)],
+) -> Result<SubjectScores> {
+    let candidate = contest.candidate(subject);
+    let inspector = &candidate.inspector;
+    let config = &inspector.model().config;
+    let damaged = subject.setting.damage(episode);
+    let experts = encode(inspector, damaged.as_ref().unwrap_or(episode))?;
+    let alphas = subject.setting.alphas(config, experts.controls.len() + 1);
+    let beliefs = inspector.filter(&experts, &alphas)?;
+    let rolled = roll(inspector, &experts, &beliefs, contest.protocol)?;
+    let pixels = inspector.decode_pixels(&rolled.gaussians.mean)?;
+    let size = pixels.len() / contest.protocol.horizon.max(1);
+    let frames = FrameScores::of(pixels.chunks_exact(size.max(1)), truth);
+    let as_trained = subject.setting == Setting::default();
+    let credit = if as_trained && config.training.masks {
+        Some(credit::of(contest, candidate, &experts, episode, truth)?)
+    } else {
+        None
+    };
+    Ok(SubjectScores {
+        frames,
+        shares: shares(
+            config,
+            &alphas,
+            &experts,
+            &beliefs,
+            candidate.probe.as_ref(),
+        ),
+        filtered: beliefs.posterior.mean,
+        predicted: rolled.gaussians.mean,
+        credit,
+    })
+}
