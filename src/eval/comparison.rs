@@ -244,8 +244,10 @@ pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
 mod tests {
     use super::*;
 
-    fn side(label: &str, seeds: &[fn(usize) -> f64]) -> Side {
-        let seed = |psnr: &fn(usize) -> f64| {
+    type Psnr = fn(usize) -> f64;
+
+    fn side(label: &str, seeds: &[Psnr]) -> Side {
+        let seed = |psnr: &Psnr| {
             let of = |i| Means {
                 psnr_db: psnr(i),
                 ..Means::default()
@@ -261,11 +263,9 @@ mod tests {
     #[test]
     fn a_finding_is_what_the_interval_says() {
         // Episodes differ by far more than the models: only pairs can tell.
-        let base: fn(usize) -> f64 = |i| 20.0 + 5.0 * (i as f64).sin();
-        let better: fn(usize) -> f64 =
-            |i| 20.5 + 5.0 * (i as f64).sin() + 0.1 * (i as f64 * 0.3).cos();
-        let noisy: fn(usize) -> f64 =
-            |i| 20.0 + 5.0 * (i as f64).sin() + if i % 2 == 0 { 1.0 } else { -1.0 };
+        let base: Psnr = |i| 20.0 + 5.0 * (i as f64).sin();
+        let better: Psnr = |i| 20.5 + 5.0 * (i as f64).sin() + 0.1 * (i as f64 * 0.3).cos();
+        let noisy: Psnr = |i| 20.0 + 5.0 * (i as f64).sin() + if i % 2 == 0 { 1.0 } else { -1.0 };
         let (a, b, c) = (
             side("a", &[better]),
             side("b", &[base]),
@@ -283,8 +283,8 @@ mod tests {
 
     #[test]
     fn seeds_are_averaged_and_counted() {
-        let (low, high): (fn(usize) -> f64, fn(usize) -> f64) = (|_| 19.0, |_| 21.0);
-        let one: fn(usize) -> f64 = |_| 20.0;
+        let (low, high): (Psnr, Psnr) = (|_| 19.0, |_| 21.0);
+        let one: Psnr = |_| 20.0;
         let found = compare(&side("a", &[low, high, high]), &side("b", &[one])).unwrap();
         assert_eq!(found.seeds, Some([2, 3]));
         assert!((found.psnr_db.mean - 1.0 / 3.0).abs() < 1e-9);
@@ -299,7 +299,7 @@ mod tests {
 
     #[test]
     fn the_papers_claims_are_asked_by_name() {
-        let flat: fn(usize) -> f64 = |_| 20.0;
+        let flat: Psnr = |_| 20.0;
         let sides =
             ["v", "vhp", "vhp, prior off", TRIVIAL[0], TRIVIAL[1]].map(|l| side(l, &[flat]));
         let asked: Vec<[String; 2]> = comparisons(&sides)

@@ -90,21 +90,13 @@ fn quality(text: &mut String, summary: &Summary) {
         let title = format!("Quoted from the paper: {name}");
         head(text, &title, &["model", "RMSE", "SSIM", "PSNR, dB"]);
         for (model, rmse, [ssim, ssim_sd], [psnr, psnr_sd]) in rows {
-            let ssim = Spread {
-                mean: ssim,
-                sd: ssim_sd,
-            };
-            let psnr = Spread {
-                mean: psnr,
-                sd: psnr_sd,
-            };
             row(
                 text,
                 &[
                     format!("{model} (quoted)"),
                     format!("{rmse:.3}"),
-                    pm(ssim, 2),
-                    pm(psnr, 2),
+                    format!("{ssim:.3} ± {ssim_sd:.2}"),
+                    format!("{psnr:.2} ± {psnr_sd:.2}"),
                 ],
             );
         }
@@ -184,9 +176,9 @@ fn regression(text: &mut String, summary: &Summary) {
             "beliefs",
             "regressor",
             "RMSE, cm",
-            "|x|, cm",
-            "|y|, cm",
-            "|yaw|, °",
+            "x, cm",
+            "y, cm",
+            "yaw, °",
         ];
         head(text, title, &columns);
         for r in rows {

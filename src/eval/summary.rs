@@ -9,6 +9,7 @@ use super::protocol::Protocol;
 use super::regression::{self, PoseErrors};
 use super::score::{Contest, EpisodeScores, FrameScores};
 use super::spread::Spread;
+use crate::measure::bootstrap::{self, Interval};
 use crate::modality::Expert;
 
 /// A row of the paper's Tables 1 and 2, and its curves.
@@ -24,6 +25,9 @@ pub struct Quality {
     pub psnr_db: Spread,
     /// Over episodes, at each horizon from 1: squared error, structural similarity, PSNR.
     pub horizons: Vec<[Spread; 3]>,
+    /// PSNR in dB over that of the last seen frame held, and of the mean frame, at each horizon, paired over episodes;
+    /// empty for these themselves.
+    pub ahead: Vec<[Interval; 2]>,
 }
 
 /// Mean Shapley values over episodes (D24).
@@ -85,7 +89,10 @@ pub fn summarise(contest: &Contest, all: &[EpisodeScores]) -> Result<Option<Summ
             .filter_map(|episode| episode.subjects.get(place))
             .map(|scores| &scores.frames)
             .collect();
-        quality.extend(rate(&subject.label, &scores));
+        quality.extend(rate(&subject.label, &scores).map(|quality| Quality {
+            ahead: ahead(place, all),
+            ..quality
+        }));
     }
     let [held, mean] = TRIVIAL;
     let of =
@@ -151,7 +158,24 @@ fn rate(subject: &str, scores: &[&FrameScores]) -> Option<Quality> {
                 ])
             })
             .collect::<Option<_>>()?,
+        ahead: Vec::new(),
     })
+}
+
+/// How far a row is ahead of the trivial predictors at each horizon.
+fn ahead(place: usize, all: &[EpisodeScores]) -> Vec<[Interval; 2]> {
+    let horizon = all.first().map_or(0, |e| e.held.psnr_db.len());
+    let over = |h: usize, trivial: fn(&EpisodeScores) -> &FrameScores| {
+        let one = |e: &EpisodeScores| {
+            let own = e.subjects.get(place)?.frames.psnr_db.get(h)?;
+            Some(own - trivial(e).psnr_db.get(h)?)
+        };
+        let differences: Vec<f64> = all.iter().filter_map(one).collect();
+        bootstrap::mean_95(&differences, 0)
+    };
+    (0..horizon)
+        .map_while(|h| Some([over(h, |e| &e.held)?, over(h, |e| &e.mean_frame)?]))
+        .collect()
 }
 
 fn credited(contest: &Contest, all: &[EpisodeScores]) -> Vec<Credited> {
@@ -256,6 +280,9 @@ mod tests {
             episode(2.0, 2.0),
         ];
         assert_eq!(extremes(&all, [0, 1], 2), [vec![1, 2], vec![3, 0]]);
-        assert_eq!(extremes(&all[..1], [0, 1], 2), [vec![], vec![]]);
+        assert_eq!(
+            extremes(&all[..1], [0, 1], 2),
+            [Vec::<usize>::new(), Vec::new()]
+        );
     }
 }

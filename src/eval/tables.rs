@@ -2,8 +2,9 @@
 
 use super::comparison::TRIVIAL;
 use super::score::{Contest, EpisodeScores, FrameScores};
-use super::summary::Summary;
+use super::summary::{Quality, Summary};
 use super::table::{Cells, Column, Table};
+use crate::measure::bootstrap::Interval;
 
 /// Collects a column from rows.
 fn text<T>(
@@ -32,6 +33,11 @@ fn number<T>(
     Column { name, about, cells }
 }
 
+/// A row of an episode, its model's name, and the horizon's scores.
+type FrameRow<'a> = (&'a EpisodeScores, &'a str, &'a FrameScores, usize);
+/// A row of the table of horizons.
+type HorizonRow<'a> = (&'a Quality, usize);
+
 /// All tables.
 pub fn tables(contest: &Contest, all: &[EpisodeScores], summary: &Summary) -> Vec<Table> {
     vec![
@@ -57,8 +63,7 @@ fn frames(contest: &Contest, all: &[EpisodeScores]) -> Table {
             rows.extend((0..scores.psnr_db.len()).map(|h| (episode, model, scores, h)));
         }
     }
-    type Row<'a> = (&'a EpisodeScores, &'a str, &'a FrameScores, usize);
-    let at = |of: fn(&FrameScores) -> &Vec<f64>| move |r: &Row<'_>| of(r.2).get(r.3).copied();
+    let at = |of: fn(&FrameScores) -> &Vec<f64>| move |r: &FrameRow<'_>| of(r.2).get(r.3).copied();
     Table {
         name: "frames",
         columns: vec![
@@ -100,9 +105,11 @@ fn quality(summary: &Summary) -> Table {
         .iter()
         .flat_map(|q| (0..q.horizons.len()).map(move |h| (q, h)))
         .collect();
-    type Row<'a> = (&'a super::summary::Quality, usize);
-    let mean = |k: usize| move |r: &Row<'_>| Some(r.0.horizons[r.1][k].mean);
-    let sd = |k: usize| move |r: &Row<'_>| Some(r.0.horizons[r.1][k].sd);
+    let mean = |k: usize| move |r: &HorizonRow<'_>| Some(r.0.horizons[r.1][k].mean);
+    let sd = |k: usize| move |r: &HorizonRow<'_>| Some(r.0.horizons[r.1][k].sd);
+    let ahead = |k: usize, of: fn(&Interval) -> f64| {
+        move |r: &HorizonRow<'_>| r.0.ahead.get(r.1).map(|both| of(&both[k]))
+    };
     Table {
         name: "horizons",
         columns: vec![
@@ -135,6 +142,42 @@ fn quality(summary: &Summary) -> Table {
                 "standard deviation over episodes, in dB",
                 &rows,
                 sd(2),
+            ),
+            number(
+                "over_held_db",
+                "PSNR over that of the last frame held",
+                &rows,
+                ahead(0, |i| i.mean),
+            ),
+            number(
+                "over_held_db_low",
+                "lower end of its 95 % bootstrap interval",
+                &rows,
+                ahead(0, |i| i.low),
+            ),
+            number(
+                "over_held_db_high",
+                "upper end",
+                &rows,
+                ahead(0, |i| i.high),
+            ),
+            number(
+                "over_mean_frame_db",
+                "PSNR over that of the mean training frame",
+                &rows,
+                ahead(1, |i| i.mean),
+            ),
+            number(
+                "over_mean_frame_db_low",
+                "lower end of its interval",
+                &rows,
+                ahead(1, |i| i.low),
+            ),
+            number(
+                "over_mean_frame_db_high",
+                "upper end",
+                &rows,
+                ahead(1, |i| i.high),
             ),
         ],
     }

@@ -148,9 +148,8 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
     let panel = Panel {
         size: [460.0, 420.0],
         title: format!(
-            "Absolute errors of predicted positions, fitted on {}; 1σ ellipses ({:.1} % of a Gaussian)",
-            fitted_on.name(),
-            100.0 * ONE_SIGMA_MASS
+            "Absolute position errors, predicted; regression fitted on {}",
+            fitted_on.name()
         ),
         axes: ["|x error|, cm".to_owned(), "|y error|, cm".to_owned()],
         series,
@@ -163,6 +162,12 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
         .map(|l| ((*l).to_owned(), style(l, &labels)))
         .collect();
     below(&mut plot, &named);
+    let mass = format!(
+        "Ellipses are one standard deviation: {:.1} % of a Gaussian's mass. Crosses are means.",
+        100.0 * ONE_SIGMA_MASS
+    );
+    plot.text([10.0, plot.size[1] + 12.0], mass, Anchor::Start);
+    plot.size[1] += 22.0;
     Some(plot)
 }
 

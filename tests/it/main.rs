@@ -8,6 +8,7 @@ mod damage;
 mod data;
 mod differences;
 mod errors;
+mod eval;
 mod export;
 mod exported_mcap;
 #[cfg(feature = "rerun")]

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
 
 use std::fs;
+use std::path::Path;
 
 use crate::common::{answer, poescope, simulated};
 
@@ -94,15 +95,32 @@ fn simulate_info_train_view_eval() {
         assert_ne!(said(&on), said(&off), "{on}\n{off}");
     }
 
+    evaluated(&data, &run);
+}
+
+/// The tables of what was trained.
+fn evaluated(data: &Path, run: &Path) {
     let mut eval = poescope();
     eval.args(["eval", "--json", "--split", "val"]);
-    let report = answer(eval.arg("--data").arg(&data).arg("--model").arg(&run));
+    let report = answer(eval.arg("--data").arg(data).arg("--model").arg(run));
     let report: serde_json::Value = serde_json::from_str(&report).unwrap();
     assert_eq!(report["episodes"], 6);
-    let rows = report["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 11);
-    assert!(
-        rows.iter()
-            .all(|row| row["model_db"].as_f64().unwrap() > 0.0)
+    let quality = report["quality"].as_array().unwrap();
+    let names: Vec<&str> = quality
+        .iter()
+        .map(|row| row["subject"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        names,
+        ["v-h-p", "v-h-p, prior off", "last frame held", "mean frame"]
     );
+    for row in quality {
+        assert_eq!(row["horizons"].as_array().unwrap().len(), 11);
+        assert!(row["psnr_db"]["mean"].as_f64().unwrap() > 0.0);
+    }
+    // Training has left regressors beside the probe: poses of new episodes are read by what was fitted on others.
+    let regression = report["regression"].as_array().unwrap().iter();
+    let held_out =
+        regression.filter(|row| row["subject"] == "v-h-p" && row["fitted_on"] == "train");
+    assert_eq!(held_out.count(), 4);
 }

@@ -46,12 +46,11 @@ fn an_expert_switched_off_changes_shares_position_and_prediction() {
 #[test]
 fn the_model_is_ahead_of_both_trivial_predictors_at_every_horizon_from_two_on() {
     let report: Value = serde_json::from_str(&answer(poescope().args(["eval", "--json"]))).unwrap();
-    let rows = report["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 11);
-    for row in &rows[1..] {
-        for over in ["over_held", "over_mean_frame"] {
-            assert!(row[over]["low"].as_f64().unwrap() > 0.0, "{row}");
-        }
+    let row = &report["quality"][0];
+    let ahead = row["ahead"].as_array().unwrap();
+    assert_eq!(ahead.len(), 11);
+    for over in ahead[1..].iter().flat_map(|both| both.as_array().unwrap()) {
+        assert!(over["low"].as_f64().unwrap() > 0.0, "{row}");
     }
 }
 

@@ -22,9 +22,10 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
     for folder in folders {
         let (model, probe) = checkpoint::load(folder)?;
         let path = folder.join(PROBE);
-        let regressors = match path.exists() {
-            true => Regressors::read(&path, model.config.latent)?,
-            false => None,
+        let regressors = if path.exists() {
+            Regressors::read(&path, model.config.latent)?
+        } else {
+            None
         };
         let candidate = Candidate {
             label: String::new(),

@@ -62,7 +62,7 @@ mod tests {
             bias: [0.1, 0.2],
             residual: [0.0; 3],
         };
-        probe.write(&path.join(PROBE)).unwrap();
+        probe.write(&path.join(PROBE), None).unwrap();
         let probed = hash(path).unwrap();
         assert_ne!(probed, first);
         config.step_secs = Some(0.25);

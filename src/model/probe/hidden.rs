@@ -12,8 +12,10 @@ use super::{Linear, Pairs};
 pub const UNITS: usize = 50;
 /// Pairs of an update.
 const BATCH: usize = 256;
-/// Updates; the rate falls along a cosine to nothing over them.
-const UPDATES: usize = 4000;
+/// So often each pair is seen, within the bounds below.
+const EPOCHS: usize = 200;
+/// Updates at least and at most; the rate falls along a cosine to nothing over them.
+const UPDATES: [usize; 2] = [1500, 4000];
 /// Adam's rate at the beginning.
 const RATE: f64 = 3e-3;
 
@@ -97,7 +99,9 @@ impl Hidden {
         let mut adam = AdamW::new(vars, params)?;
         let mut order: Vec<u32> = (0..pairs.len() as u32).collect();
         let mut next = order.len();
-        for update in 0..UPDATES {
+        let [least, most] = UPDATES;
+        let updates = (EPOCHS * pairs.len() / BATCH).clamp(least, most);
+        for update in 0..updates {
             if next + BATCH > order.len() {
                 order.shuffle(&mut rng);
                 next = 0;
@@ -108,7 +112,7 @@ impl Hidden {
             let (x, y) = (x.index_select(&rows, 0)?, y.index_select(&rows, 0)?);
             let hidden = x.matmul(&w1.t()?)?.broadcast_add(&b1)?.relu()?;
             let read = hidden.matmul(&w2.t()?)?.broadcast_add(&b2)?;
-            let part = update as f64 / UPDATES as f64;
+            let part = update as f64 / updates as f64;
             adam.set_learning_rate(RATE * 0.5 * (1.0 + (std::f64::consts::PI * part).cos()));
             adam.backward_step(&(read - y)?.sqr()?.mean_all()?)?;
         }
@@ -130,7 +134,9 @@ impl Hidden {
         };
         let rows = second.weight.chunks_exact_mut(UNITS).zip(&mut second.bias);
         for ((row, bias), (mean, deviation)) in rows.zip(&to) {
-            row.iter_mut().for_each(|w| *w *= deviation);
+            for w in row {
+                *w *= deviation;
+            }
             *bias = *bias * deviation + mean;
         }
         Ok(Some(Self { first, second }))
@@ -139,7 +145,9 @@ impl Hidden {
     /// What it says of `x`.
     pub fn read(&self, x: &[f32]) -> Vec<f32> {
         let mut hidden = self.first.read(x);
-        hidden.iter_mut().for_each(|h| *h = h.max(0.0));
+        for h in &mut hidden {
+            *h = h.max(0.0);
+        }
         self.second.read(&hidden)
     }
 }

@@ -1,0 +1,268 @@
+//! The paper's tables from one command: whole, in shards, taken up again, and under switches.
+#![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use poescope::model::config::Config;
+use serde_json::Value;
+
+use crate::common::{answer, poescope, simulated, three_experts, untrained};
+
+const EPISODES: usize = 20;
+
+/// Simulated test episodes, and `v`, `vhp` and `v-h-p` before training.
+struct Bench {
+    folder: tempfile::TempDir,
+    data: PathBuf,
+    models: Vec<PathBuf>,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let data = simulated(
+            folder.path().join("test.mcap"),
+            EPISODES,
+            &["--steps", "9", "--split", "test"],
+        );
+        let named = |name: &str| {
+            let mut config = Config::named(name).unwrap();
+            config.step_secs = three_experts().step_secs;
+            untrained(folder.path().join(name), config)
+        };
+        let models = ["v", "vhp"].map(named).into_iter();
+        let models = models.chain([untrained(folder.path().join("v-h-p"), three_experts())]);
+        Self {
+            models: models.collect(),
+            data,
+            folder,
+        }
+    }
+
+    fn eval(&self, options: &[&str]) -> Command {
+        let mut eval = poescope();
+        eval.args(["eval", "--horizon", "5"])
+            .args(options)
+            .arg("--data")
+            .arg(&self.data);
+        for model in &self.models {
+            eval.arg("--model").arg(model);
+        }
+        eval
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+}
+
+/// Files of a result, without the scores they were made from.
+fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let mut files: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().unwrap() != "jsonl")
+        .map(|path| {
+            (
+                path.file_name().unwrap().to_string_lossy().into_owned(),
+                fs::read(&path).unwrap(),
+            )
+        })
+        .collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn shards_and_interrupted_runs_come_to_the_same_bytes() {
+    let bench = Bench::new();
+    let [whole, shards, torn] = ["whole", "shards", "torn"].map(|name| bench.out(name));
+    let said = answer(bench.eval(&[]).arg("--out").arg(&whole));
+    for shard in ["1/2", "2/2"] {
+        let options = ["--shard", shard];
+        // Half of it cannot be summed up yet.
+        assert_eq!(answer(bench.eval(&options).arg("--out").arg(&shards)), "");
+        let merged = bench
+            .eval(&["--merge"])
+            .arg("--out")
+            .arg(&shards)
+            .output()
+            .unwrap();
+        assert_eq!(merged.status.success(), shard == "2/2");
+        let complaint = String::from_utf8(merged.stderr).unwrap();
+        assert!(
+            shard == "2/2" || complaint.contains("10 of 20 episodes are not scored yet"),
+            "{complaint}"
+        );
+    }
+    let expected = results(&whole);
+    let names: Vec<&str> = expected.iter().map(|(name, _)| name.as_str()).collect();
+    let tables = [
+        "comparisons",
+        "contact",
+        "frames",
+        "horizons",
+        "regression",
+        "shapley",
+    ];
+    for name in tables {
+        assert!(
+            names.contains(&&*format!("{name}.csv"))
+                && names.contains(&&*format!("{name}.parquet"))
+        );
+    }
+    for figure in ["contact", "ellipses", "horizons", "strips"] {
+        assert!(
+            names.contains(&&*format!("{figure}.svg"))
+                && names.contains(&&*format!("{figure}.png"))
+        );
+    }
+    assert_eq!(fs::read_to_string(whole.join("tables.md")).unwrap(), said);
+    assert!(results(&shards) == expected);
+
+    // A run that was killed while it wrote: the head, some lines, and half of one.
+    let scores = fs::read_to_string(whole.join("scores.jsonl")).unwrap();
+    let lines: Vec<&str> = scores.split_inclusive('\n').collect();
+    assert_eq!(lines.len(), 1 + EPISODES);
+    fs::create_dir(&torn).unwrap();
+    let half = lines[..8].concat() + &lines[8][..lines[8].len() / 2];
+    fs::write(torn.join("scores.jsonl"), half).unwrap();
+    answer(bench.eval(&[]).arg("--out").arg(&torn));
+    assert!(results(&torn) == expected);
+    assert_eq!(
+        fs::read_to_string(torn.join("scores.jsonl")).unwrap(),
+        scores
+    );
+
+    // Scores of another protocol do not mix with these.
+    let output = bench
+        .eval(&["--context", "3"])
+        .arg("--out")
+        .arg(&whole)
+        .output()
+        .unwrap();
+    let complaint = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        complaint.contains("scores of other models, data or settings"),
+        "{complaint}"
+    );
+}
+
+#[test]
+fn tables_say_the_same_in_every_format() {
+    let bench = Bench::new();
+    let out = bench.out("out");
+    let report: Value =
+        serde_json::from_str(&answer(bench.eval(&["--json"]).arg("--out").arg(&out))).unwrap();
+    let file =
+        SerializedFileReader::new(fs::File::open(out.join("frames.parquet")).unwrap()).unwrap();
+    let rows: Vec<Vec<(String, Field)>> = file
+        .get_row_iter(None)
+        .unwrap()
+        .map(|row| row.unwrap().into_columns())
+        .collect();
+    let csv = fs::read_to_string(out.join("frames.csv")).unwrap();
+    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let head = lines.next().unwrap();
+    assert_eq!(
+        head,
+        [
+            "episode",
+            "model",
+            "horizon",
+            "squared_error",
+            "ssim",
+            "psnr_db"
+        ]
+    );
+    // Three models, two of them products that stand without their prior as well, and the two trivial predictors.
+    assert_eq!(rows.len(), EPISODES * 5 * 7);
+    let mut sum = 0.0;
+    for (row, line) in rows.iter().zip(lines) {
+        for ((name, field), (column, text)) in row.iter().zip(head.iter().zip(line)) {
+            assert_eq!(name, column);
+            match field {
+                Field::Str(said) => assert_eq!(said, text),
+                Field::Long(said) => assert_eq!(said.to_string(), text),
+                Field::Double(said) => {
+                    let read: f64 = text.parse().unwrap();
+                    assert_eq!(said.to_bits(), read.to_bits());
+                }
+                other => panic!("{other:?}"),
+            }
+        }
+        if let (Field::Str(model), Field::Double(error)) = (&row[1].1, &row[3].1)
+            && model == "vhp"
+        {
+            sum += error;
+        }
+    }
+    let row = report["quality"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|row| row["subject"] == "vhp")
+        .unwrap();
+    let rmse = (sum / (EPISODES * 5) as f64).sqrt();
+    assert!((row["rmse"].as_f64().unwrap() - rmse).abs() < 1e-9);
+    // Shapley values add up to what all sensors save over none, episode by episode.
+    let scores = fs::read_to_string(out.join("scores.jsonl")).unwrap();
+    for line in scores.lines().skip(1) {
+        let episode: Value = serde_json::from_str(line).unwrap();
+        let credit = &episode["subjects"][2]["credit"];
+        let parts = credit["squared_error"].as_array().unwrap().iter();
+        let sum: f64 = parts.map(|part| part.as_f64().unwrap()).sum();
+        assert!((sum - credit["squared_error_gain"].as_f64().unwrap()).abs() < 1e-9);
+        assert!(episode["subjects"][0]["credit"].is_null());
+    }
+}
+
+#[test]
+fn switches_and_damage_stand_beside_the_models_as_trained() {
+    let bench = Bench::new();
+    let states = [
+        "--json",
+        "--state",
+        "alpha=haptic:0",
+        "--state",
+        "corrupt=vision:noise:0.5",
+    ];
+    let report: Value = serde_json::from_str(&answer(&mut bench.eval(&states))).unwrap();
+    let psnr = |subject: &str| {
+        let mut rows = report["quality"].as_array().unwrap().iter();
+        let row = rows.find(|row| row["subject"] == subject);
+        row.map(|row| row["psnr_db"]["mean"].as_f64().unwrap())
+    };
+    // Only one model has a haptic expert; all of them see.
+    assert!(psnr("v-h-p, alpha=haptic:0").is_some() && psnr("vhp, alpha=haptic:0").is_none());
+    for model in ["v", "vhp", "v-h-p"] {
+        let (own, damaged) = (
+            psnr(model),
+            psnr(&format!("{model}, corrupt=vision:noise:0.5")),
+        );
+        assert!(
+            own.is_some() && damaged.is_some() && own != damaged,
+            "{model}: {own:?} {damaged:?}"
+        );
+    }
+    for (state, what) in [
+        ("alpha=haptic:2000", "α is 0, or from"),
+        ("episode=x", "switches and damages nothing"),
+        ("alpha=concat:0", "no model has these experts"),
+        (
+            "alpha=vision:0,joint:0,prior:0",
+            "leaves no expert of model `vhp` on",
+        ),
+    ] {
+        let output = bench.eval(&["--state", state]).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            !output.status.success() && said.contains(what),
+            "{state}: {said}"
+        );
+    }
+}
