@@ -185,7 +185,7 @@ pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
         let group = &contest.candidate(subject).group;
         let label = match subject.setting.name.as_str() {
             "" => group.clone(),
-            name => format!("{group}, {name}"),
+            name => format!("{group} ({name})"),
         };
         let means = all
             .iter()
@@ -224,7 +224,7 @@ pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
         .iter()
         .filter_map(|[a, b]| find(a).zip(find(b)))
         .collect();
-    let without = |side: &Side| find(&format!("{}, prior off", side.label));
+    let without = |side: &Side| find(&format!("{} (prior off)", side.label));
     pairs.extend(sides.iter().filter_map(|side| Some((side, without(side)?))));
     let rows: Vec<&Side> = sides.iter().filter(|side| !is_trivial(side)).collect();
     if pairs.is_empty() {
@@ -301,13 +301,13 @@ mod tests {
     fn the_papers_claims_are_asked_by_name() {
         let flat: Psnr = |_| 20.0;
         let sides =
-            ["v", "vhp", "vhp, prior off", TRIVIAL[0], TRIVIAL[1]].map(|l| side(l, &[flat]));
+            ["v", "vhp", "vhp (prior off)", TRIVIAL[0], TRIVIAL[1]].map(|l| side(l, &[flat]));
         let asked: Vec<[String; 2]> = comparisons(&sides)
             .into_iter()
             .map(|c| [c.better, c.worse])
             .collect();
         assert_eq!(asked[0], ["vhp", "v"]);
-        assert_eq!(asked[1], ["vhp", "vhp, prior off"]);
+        assert_eq!(asked[1], ["vhp", "vhp (prior off)"]);
         assert_eq!(asked.len(), 2 + 2 * 3);
         let own = ["mine", "yours", TRIVIAL[0]].map(|l| side(l, &[flat]));
         assert_eq!(comparisons(&own)[0].better, "yours");

@@ -238,11 +238,11 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
         row.map(|row| row["psnr_db"]["mean"].as_f64().unwrap())
     };
     // Only one model has a haptic expert; all of them see.
-    assert!(psnr("v-h-p, alpha=haptic:0").is_some() && psnr("vhp, alpha=haptic:0").is_none());
+    assert!(psnr("v-h-p (alpha=haptic:0)").is_some() && psnr("vhp (alpha=haptic:0)").is_none());
     for model in ["v", "vhp", "v-h-p"] {
         let (own, damaged) = (
             psnr(model),
-            psnr(&format!("{model}, corrupt=vision:noise:0.5")),
+            psnr(&format!("{model} (corrupt=vision:noise:0.5)")),
         );
         assert!(
             own.is_some() && damaged.is_some() && own != damaged,
@@ -250,7 +250,7 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
         );
     }
     for (state, what) in [
-        ("alpha=haptic:2000", "α is 0, or from"),
+        ("alpha=haptic:2000", "is not like vision:0"),
         ("episode=x", "switches and damages nothing"),
         ("alpha=concat:0", "no model has these experts"),
         (

@@ -112,7 +112,12 @@ fn evaluated(data: &Path, run: &Path) {
         .collect();
     assert_eq!(
         names,
-        ["v-h-p", "v-h-p, prior off", "last frame held", "mean frame"]
+        [
+            "v-h-p",
+            "v-h-p (prior off)",
+            "last frame held",
+            "mean frame"
+        ]
     );
     for row in quality {
         assert_eq!(row["horizons"].as_array().unwrap().len(), 11);

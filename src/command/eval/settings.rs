@@ -35,7 +35,7 @@ pub fn subjects(
             }
             let label = match setting.name.as_str() {
                 "" => model.label.clone(),
-                name => format!("{}, {name}", model.label),
+                name => format!("{} ({name})", model.label),
             };
             subjects.push(Subject {
                 label,
