@@ -51,7 +51,7 @@ pub enum Command {
 #[derive(Clone, Debug, Default, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct ViewArgs {
-    /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
+    /// Dataset: an .mcap file or a folder of them, or the name of a sample, `pybullet` [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
     /// Checkpoint folder; repeat for several models [default: the sample model]
@@ -123,7 +123,7 @@ pub struct ServeArgs {
     /// Port to listen on; 0 takes a free one
     #[arg(long, default_value_t = 8080)]
     pub port: u16,
-    /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
+    /// Dataset: an .mcap file or a folder of them, or the name of a sample, `pybullet` [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
     /// Checkpoint folder; repeat for several models [default: the sample model]
@@ -365,7 +365,7 @@ pub struct ExportArgs {
     /// Replace a file that is there
     #[arg(long)]
     pub force: bool,
-    /// Dataset: an .mcap file or a folder of them [default: the sample episodes]
+    /// Dataset: an .mcap file or a folder of them, or the name of a sample, `pybullet` [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
     /// Checkpoint folder; repeat for several models in one file [default: the sample model]

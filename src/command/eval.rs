@@ -93,11 +93,11 @@ fn folders(args: &EvalArgs, data: &Path) -> anyhow::Result<Vec<PathBuf>> {
     if !args.model.is_empty() {
         return Ok(args.model.clone());
     }
-    let beside = sample::beside(data);
-    if beside.is_empty() {
-        return Ok(vec![sample::model(None)?]);
+    let models = sample::models(data)?;
+    if models.is_empty() {
+        bail!("no model beside the data; name one with --model FOLDER");
     }
-    Ok(beside)
+    Ok(models)
 }
 
 /// The models under every setting.

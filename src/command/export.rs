@@ -30,7 +30,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         return view::run(args);
     }
     let stop = super::stop_on_signals()?;
-    let folders = open::folders(&args.model)?;
+    let folders = open::folders(&args.model, args.data.as_ref())?;
     let Opened { dataset, models } =
         open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
     let infos: Vec<_> = models.iter().map(|m| Arc::new(m.info().clone())).collect();

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 
 use super::sample;
 use crate::data::{Dataset, Role};
@@ -12,12 +12,17 @@ use crate::model::observation::suits;
 use crate::session::predict::Predictor;
 use crate::session::trained::{Origin, Trained};
 
-/// The checkpoint folders that were asked for, else the sample model's.
-pub fn folders(asked: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
-    if asked.is_empty() {
-        return Ok(vec![sample::model(None)?]);
+/// The checkpoint folders that were asked for, else the one that suits the dataset asked for best.
+pub fn folders(asked: &[PathBuf], data: Option<&PathBuf>) -> anyhow::Result<Vec<PathBuf>> {
+    if !asked.is_empty() {
+        return Ok(asked.to_vec());
     }
-    Ok(asked.to_vec())
+    let mut models = sample::models(&sample::data(data)?)?;
+    models.truncate(1);
+    if models.is_empty() {
+        bail!("no model beside the data; name one with --model FOLDER");
+    }
+    Ok(models)
 }
 
 /// A dataset and models that suit it.

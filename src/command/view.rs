@@ -126,7 +126,7 @@ pub(super) struct Opening {
 
 /// Opens what the arguments name.
 pub(super) fn open(args: &ViewArgs) -> anyhow::Result<Opening> {
-    let folders = open::folders(&args.model)?;
+    let folders = open::folders(&args.model, args.data.as_ref())?;
     // Before the models are read: what is written meanwhile is seen.
     let watched = folders.iter().enumerate();
     let watched = watched.filter_map(|(model, folder)| Watched::new(model, folder));

@@ -27,7 +27,7 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
     }
     let keys = parse_script(args.keys.as_deref().unwrap_or_default()).context("--keys")?;
     let output = Output::create(&args.out, args.force)?;
-    let folders = open::folders(&args.model)?;
+    let folders = open::folders(&args.model, args.data.as_ref())?;
     let Opened { dataset, models } =
         open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
     let face = Face {

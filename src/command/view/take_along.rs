@@ -211,7 +211,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mine = folder.path().join(format!("poescope-ep00000.{ENDING}"));
         std::fs::write(&mine, b"mine").unwrap();
-        let opened = open::open(None, &[], &open::folders(&[]).unwrap()).unwrap();
+        let opened = open::open(None, &[], &open::folders(&[], None).unwrap()).unwrap();
         let mut session = Session::new(Arc::clone(&opened.dataset) as _, opened.models.clone());
         assert!(session.wait_idle(Duration::from_mins(2)));
         let mut take = taker(&mut session, &opened, folder.path().to_owned());

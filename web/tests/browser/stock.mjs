@@ -90,6 +90,7 @@ async function open(viewport = { width: 1280, height: 720 }) {
 
 async function scrubs(one, other) {
   const before = await pictures(other);
+  const table = await drawn(other);
   const slider = one.locator("label", { hasText: /^Step$/ }).first();
   const id = await slider.getAttribute("for");
   const thumb = one.locator(`[id="${id}"] [role=slider]`);
@@ -97,11 +98,16 @@ async function scrubs(one, other) {
   for (let press = 0; press < 6; press++) await thumb.press("ArrowRight");
   await holds("the other client shows the step", other, () => /step\s*7\s*of/.test(document.body.innerText));
   await differs("the other client shows its frames", other, before);
+  await moves("the other client shows the plate moved", other, table);
   await holds("prediction and error are there", one, () => document.querySelectorAll("img").length >= 4);
 }
 
 async function switches(one, other) {
   const before = await pictures(other);
+  const table = await drawn(other);
+  await other.waitForTimeout(1000);
+  check("the 3-D view stands still while nothing happens", (await drawn(other)) === table);
+  await holds("vision has a share", other, () => /V vision\s*[1-9]\d* %/.test(document.body.innerText));
   const box = (page) => page.getByLabel("V vision", { exact: true });
   check("vision is on", await box(other).isChecked());
   await box(one).click({ force: true });
@@ -110,6 +116,8 @@ async function switches(one, other) {
     return document.getElementById(label?.htmlFor)?.checked === false;
   });
   await differs("the belief changes with it", other, before);
+  await holds("its share is gone", other, () => /V vision\s*0 %/.test(document.body.innerText));
+  await moves("the predicted plate moves with it", other, table);
   for (const page of [one, other]) check(`no errors: ${page.errors.join(" | ")}`, page.errors.length === 0);
 }
 
@@ -131,6 +139,29 @@ async function differs(what, page, before) {
   };
   const held = await page.waitForFunction(changed, before, { timeout: PATIENCE, polling: 200 }).catch(() => undefined);
   check(what, held !== undefined);
+}
+
+/** Whether the 3-D view becomes another. */
+async function moves(what, page, before) {
+  let now = before;
+  for (let tries = 0; tries < 40 && now === before; tries++) {
+    await page.waitForTimeout(250);
+    now = await drawn(page);
+  }
+  check(what, now !== before);
+}
+
+/** The 3-D view, read in the very frame that draws it: afterwards the browser has taken it away. */
+async function drawn(page) {
+  await page.bringToFront();
+  return page.evaluate(
+    () =>
+      new Promise((done) => {
+        const area = (canvas) => canvas.width * canvas.height;
+        const [largest] = [...document.querySelectorAll("canvas")].sort((a, b) => area(b) - area(a));
+        requestAnimationFrame(() => done(largest.toDataURL()));
+      }),
+  );
 }
 
 /** What the frames are, as their addresses say. */
