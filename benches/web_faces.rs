@@ -47,7 +47,7 @@ fn main() {
     let (sender, screens) = unbounded_channel();
     std::thread::spawn(move || {
         let mut parser = vt100::Parser::new(ROWS, COLUMNS, 0);
-        let mut bytes = [0; 1 << 16];
+        let mut bytes = vec![0; 1 << 16];
         while let Ok(count @ 1..) = drawn.read(&mut bytes) {
             parser.process(&bytes[..count]);
             let _ = sender.send((parser.screen().contents(), Instant::now()));
