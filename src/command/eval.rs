@@ -85,7 +85,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         return Ok(());
     }
     let order: Vec<&str> = wanted.iter().map(|&i| id(i)).collect();
-    conclude(args, &contest, &file.in_order(&order), &dataset)
+    conclude(args, &contest, &file.in_order(&order), &dataset, &folders)
 }
 
 /// The checkpoints: those that are named, those beside the data, the sample's.
@@ -199,6 +199,7 @@ fn conclude(
     contest: &Contest,
     all: &[EpisodeScores],
     dataset: &Dataset,
+    folders: &[PathBuf],
 ) -> anyhow::Result<()> {
     let Some(summary) = summarise(contest, all)? else {
         bail!(
@@ -214,7 +215,7 @@ fn conclude(
             write_csv(&table, &out.join(format!("{}.csv", table.name)))?;
             write_parquet(&table, &out.join(format!("{}.parquet", table.name)))?;
         }
-        figures::write(contest, all, &summary, dataset, out)?;
+        figures::write(contest, all, &summary, dataset, folders, out)?;
         crate::model::checkpoint::write_atomic(&out.join("tables.md"), text.as_bytes())?;
         eprintln!("tables and figures: {}", out.display());
     }

@@ -1,7 +1,7 @@
 //! Precision shares lined up with the moment of contact (D25): when does touch take over?
 
 use crate::measure::bootstrap::{Interval, mean_95};
-use crate::measure::events::onsets;
+use crate::measure::events::{contact_newtons, onsets};
 use crate::measure::fusion::{mean_share, position_shares, precision_shares};
 use crate::modality::Expert;
 use crate::model::config::Config;
@@ -65,18 +65,12 @@ pub struct Aligned {
     pub share: Interval,
 }
 
-/// The step of an episode's first contact: the force rises above a quarter of its largest value anywhere in `all`
-/// episodes' median peak.
-fn threshold(all: &[EpisodeScores]) -> f32 {
-    let peak = |e: &EpisodeScores| e.force_newtons.iter().copied().fold(0.0, f32::max);
-    let mut peaks: Vec<f32> = all.iter().map(peak).collect();
-    peaks.sort_by(f32::total_cmp);
-    0.25 * peaks.get(peaks.len() / 2).copied().unwrap_or(0.0)
-}
-
-/// Shares around the first contact of every episode, and the force that counts as one, in newtons.
+/// Shares around the first contact of every episode, and the force that counts as one, in newtons: as the first model's
+/// training set has it, else as these episodes do.
 pub fn aligned(contest: &Contest, all: &[EpisodeScores]) -> (f32, Vec<Aligned>) {
-    let threshold = threshold(all);
+    let peak = |e: &EpisodeScores| e.force_newtons.iter().copied().fold(0.0, f32::max);
+    let known = contest.candidates.iter().find_map(|c| c.contact_newtons);
+    let threshold = known.unwrap_or_else(|| contact_newtons(all.iter().map(peak).collect()));
     let first: Vec<Option<usize>> = all
         .iter()
         .map(|e| onsets(&e.force_newtons, threshold).first().copied())

@@ -27,6 +27,8 @@ pub struct Candidate {
     pub inspector: Inspector,
     /// Its position probe.
     pub probe: Option<Probe>,
+    /// The force that counts as contact in its training set, in newtons; none where its report does not say.
+    pub contact_newtons: Option<f32>,
     /// Its pose regressors.
     pub regressors: Option<Regressors>,
 }

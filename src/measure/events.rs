@@ -25,6 +25,12 @@ pub fn onsets(force_newtons: &[f32], threshold: f32) -> Vec<usize> {
     onsets
 }
 
+/// The force that counts as contact in a set of episodes: a quarter of the median of their peaks. Zero for none.
+pub fn contact_newtons(mut peaks: Vec<f32>) -> f32 {
+    peaks.sort_by(f32::total_cmp);
+    0.25 * peaks.get(peaks.len() / 2).copied().unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -39,6 +45,12 @@ mod tests {
     fn a_recording_that_starts_in_contact_has_no_onset_there() {
         assert_eq!(onsets(&[3.0, 3.0, 0.1, 3.0], 1.0), [3]);
         assert_eq!(onsets(&[0.8, 3.0], 1.0), [1]);
+    }
+
+    #[test]
+    fn one_hard_hit_does_not_move_the_threshold() {
+        assert!((contact_newtons(vec![4.0, 900.0, 8.0, 6.0, 2.0]) - 1.5).abs() < 1e-6);
+        assert!(contact_newtons(Vec::new()).abs() < 1e-12);
     }
 
     #[test]

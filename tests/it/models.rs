@@ -256,3 +256,15 @@ fn an_expert_that_is_off_need_not_be_encoded() {
         assert!((some / all - 1.0).abs() < 1e-4, "{some} {all}");
     }
 }
+
+#[test]
+fn the_baseline_has_the_products_budget_within_a_tenth() {
+    for preset in Preset::ALL {
+        let parameters = |name: &str| {
+            let config = Config::preset(name, preset).unwrap();
+            Model::new(config, 1, &Device::Cpu).unwrap().parameters() as f64
+        };
+        let ratio = parameters("vhp-c") / parameters("vhp");
+        assert!((0.9..=1.1).contains(&ratio), "{}: {ratio}", preset.name());
+    }
+}

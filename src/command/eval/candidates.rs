@@ -27,10 +27,12 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
         } else {
             None
         };
+        let report = report(folder);
         let candidate = Candidate {
             label: String::new(),
             group: String::new(),
-            seed: seed(folder),
+            seed: report["seed"].as_u64(),
+            contact_newtons: report["contact_newtons"].as_f64().map(|n| n as f32),
             inspector: Inspector::new(model)?,
             probe,
             regressors,
@@ -51,10 +53,10 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
     Ok(candidates)
 }
 
-fn seed(folder: &Path) -> Option<u64> {
-    let report = std::fs::read_to_string(folder.join(REPORT)).ok()?;
-    let report: serde_json::Value = serde_json::from_str(&report).ok()?;
-    report["seed"].as_u64()
+/// What training said of itself; null where it did not.
+fn report(folder: &Path) -> serde_json::Value {
+    let report = std::fs::read_to_string(folder.join(REPORT)).unwrap_or_default();
+    serde_json::from_str(&report).unwrap_or_default()
 }
 
 /// What two seeds of one recipe have in common: all but the numbers read off the training set.

@@ -1,6 +1,6 @@
 //! The paper's figures, into the folder of the tables.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -9,6 +9,7 @@ use crate::eval::score::{Contest, EpisodeScores};
 use crate::eval::setting::Setting;
 use crate::eval::summary::{Summary, extremes};
 use crate::export::figures::{self, Frames, Strip};
+use crate::train::metrics::METRICS;
 
 /// Episodes of either side in the strips.
 const STRIPS: usize = 3;
@@ -19,8 +20,14 @@ pub fn write(
     all: &[EpisodeScores],
     summary: &Summary,
     dataset: &Dataset,
+    folders: &[PathBuf],
     out: &Path,
 ) -> anyhow::Result<()> {
+    let labels = contest.candidates.iter().map(|c| c.label.clone());
+    let curves = labels.zip(folders.iter().map(|folder| curve(folder)));
+    if let Some(plot) = figures::training(curves.collect()) {
+        plot.save(out, "training")?;
+    }
     figures::horizons(summary).save(out, "horizons")?;
     if let Some(plot) = figures::ellipses(summary) {
         plot.save(out, "ellipses")?;
@@ -52,6 +59,18 @@ pub fn write(
     let side = contest.candidates[0].inspector.model().config.frame_size;
     figures::strips(&title, &strips, side).save(out, "strips")?;
     Ok(())
+}
+
+/// Updates and validation PSNR of the run that made a checkpoint, as far as it left them.
+fn curve(folder: &Path) -> Vec<[f64; 2]> {
+    let metrics = std::fs::read_to_string(folder.join(METRICS)).unwrap_or_default();
+    let point = |line: &str| -> Option<[f64; 2]> {
+        let line: serde_json::Value = serde_json::from_str(line).ok()?;
+        let horizons = line["val"]["psnr_db"].as_array()?;
+        let sum: f64 = horizons.iter().filter_map(serde_json::Value::as_f64).sum();
+        Some([line["update"].as_f64()?, sum / horizons.len() as f64])
+    };
+    metrics.lines().filter_map(point).collect()
 }
 
 /// The rows the strips compare: `v` and `vhp` as the paper does, else the first two models as trained.

@@ -11,6 +11,7 @@ use super::sets::Sets;
 use crate::data::{Dataset, Episodes};
 use crate::episode::{Episode, EpisodeSource};
 use crate::eval::regression;
+use crate::measure::events::contact_newtons;
 use crate::model::Model;
 use crate::model::checkpoint::{MEAN_FRAME, PROBE, REPORT, write_atomic};
 use crate::model::inspect::Inspector;
@@ -80,6 +81,7 @@ pub fn write(
         "error_terms": error_at_mean,
         "val": validate(model, sets.val())?,
         "probe": probe,
+        "contact_newtons": contact_newtons(peaks(sets.train())?),
         "metrics": METRICS,
     });
     let text = serde_json::to_string_pretty(&report)? + "\n";
@@ -107,6 +109,16 @@ fn fit_probe(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<Value>
         "residual_covariance_on": split,
         "rmse_filtered_cm": { "train": rmse_cm(&probe, &train), "val": rmse_cm(&probe, &val) },
     }))
+}
+
+/// The largest force of each episode.
+fn peaks(train: Episodes) -> anyhow::Result<Vec<f32>> {
+    let peak = |i: usize| -> anyhow::Result<f32> {
+        let episode = train.get(i)?;
+        let forces = (0..episode.steps()).filter_map(|t| episode.force_newtons(t));
+        Ok(forces.fold(0.0, f32::max))
+    };
+    (0..train.len()).into_par_iter().map(peak).collect()
 }
 
 /// Fits the pose regressors on `train`; none with too few beliefs.
