@@ -68,7 +68,10 @@ async fn measure(
     mut screens: UnboundedReceiver<(String, Instant)>,
 ) {
     sleep(Duration::from_secs(3)).await;
-    let (mut browser, mut frames) = connect(port).await.split();
+    // What a viewer uses is not sent back to it at once, so one drives and another one looks.
+    let (mut browser, mut own) = connect(port).await.split();
+    tokio::spawn(async move { while own.next().await.is_some() {} });
+    let (_looks, mut frames) = connect(port).await.split();
     let (sender, mut steps) = unbounded_channel();
     tokio::spawn(async move {
         while let Some(Ok(message)) = frames.next().await {
