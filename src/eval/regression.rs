@@ -12,6 +12,7 @@ use super::protocol::Protocol;
 use super::score::{Contest, EpisodeScores, Subject};
 use super::spread::Spread;
 use crate::episode::Episode;
+use crate::measure::spread::sample_covariance;
 use crate::model::Model;
 use crate::model::inspect::Inspector;
 use crate::model::probe::{Pairs, Readers, Regressors};
@@ -244,25 +245,35 @@ fn of_row(
             ),
         ] {
             for regressor in [Regressor::Linear, Regressor::Network] {
-                rows.extend(read(pairs, readers, regressor).map(|errors| PoseErrors {
-                    subject: subject.label.clone(),
+                let source = Source {
+                    subject: &subject.label,
                     beliefs,
+                    regressor,
                     fitted_on,
-                    ..errors
-                }));
+                };
+                rows.extend(read(source, pairs, readers));
             }
         }
     }
     Ok(rows)
 }
 
-/// Errors of one regressor on some pairs.
-fn read(pairs: &Pairs, readers: &Readers, regressor: Regressor) -> Option<PoseErrors> {
+/// What is read by what.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    subject: &'a str,
+    beliefs: Beliefs,
+    regressor: Regressor,
+    fitted_on: FittedOn,
+}
+
+/// Errors of one regressor on some pairs; none without a pair.
+fn read(source: Source<'_>, pairs: &Pairs, readers: &Readers) -> Option<PoseErrors> {
     let mut absolute = [Vec::new(), Vec::new()];
     let mut yaw = Vec::new();
     let mut squares = 0.0;
     for (latent, truth) in pairs.iter() {
-        let says = match regressor {
+        let says = match source.regressor {
             Regressor::Linear => readers.linear.read(latent),
             Regressor::Network => readers.network.read(latent),
         };
@@ -285,14 +296,14 @@ fn read(pairs: &Pairs, readers: &Readers, regressor: Regressor) -> Option<PoseEr
         .map(|(&x, &y)| [x as f32, y as f32])
         .collect();
     Some(PoseErrors {
-        subject: String::new(),
-        beliefs: Beliefs::Filtered,
-        regressor,
-        fitted_on: FittedOn::Train,
+        subject: source.subject.to_owned(),
+        beliefs: source.beliefs,
+        regressor: source.regressor,
+        fitted_on: source.fitted_on,
         count: pairs.len(),
         rmse_cm: (squares / pairs.len() as f64).sqrt(),
         absolute_cm: [x, y],
-        covariance_cm2: crate::measure::spread::sample_covariance(&points).unwrap_or_default(),
+        covariance_cm2: sample_covariance(&points).unwrap_or_default(),
         yaw_deg: Spread::of(&yaw),
     })
 }
@@ -321,7 +332,13 @@ mod tests {
         latents.push(&own, &own[16..], &poses, [0, 4]);
         assert_eq!((latents.filtered.len(), latents.predicted.len()), (60, 56));
         let fitted = latents.fit()?.expect("enough");
-        let exact = read(&latents.filtered, &fitted.filtered, Regressor::Linear).expect("rows");
+        let source = Source {
+            subject: "x",
+            beliefs: Beliefs::Filtered,
+            regressor: Regressor::Linear,
+            fitted_on: FittedOn::Scored,
+        };
+        let exact = read(source, &latents.filtered, &fitted.filtered).expect("rows");
         assert!(exact.rmse_cm < 1e-2, "{exact:?}");
         let mut off = fitted.filtered.clone();
         off.linear.bias[0] += 0.03;
@@ -332,7 +349,7 @@ mod tests {
             row[2] = sin * turn.cos() - cos * turn.sin();
             row[3] = cos * turn.cos() + sin * turn.sin();
         }
-        let found = read(&latents.filtered, &off, Regressor::Linear).expect("rows");
+        let found = read(source, &latents.filtered, &off).expect("rows");
         assert!((found.rmse_cm - 5.0).abs() < 1e-2, "{found:?}");
         assert!((found.absolute_cm[0].mean - 3.0).abs() < 1e-2 && found.absolute_cm[0].sd < 1e-2);
         let yaw = found.yaw_deg.expect("yaw");

@@ -1,7 +1,6 @@
 //! Pose regressors that ship with a model, fitted on its training split: least squares and the network, each for
 //! beliefs that saw everything and for predicted ones.
 
-use std::collections::HashMap;
 use std::path::Path;
 
 use candle_core::{Device, Result, Tensor};
@@ -76,8 +75,8 @@ impl Regressors {
             let part = |part: &str, outputs: usize, inputs: usize| -> std::result::Result<_, _> {
                 let name = |what: &str| format!("{kind}.{part}.{what}");
                 Ok::<_, CheckpointError>(Linear {
-                    weight: of(&tensors, path, &name("weight"), outputs * inputs)?,
-                    bias: of(&tensors, path, &name("bias"), outputs)?,
+                    weight: numbers(&tensors, path, &name("weight"), outputs * inputs)?,
+                    bias: numbers(&tensors, path, &name("bias"), outputs)?,
                 })
             };
             Ok(Readers {
@@ -93,13 +92,4 @@ impl Regressors {
             predicted: readers("predicted")?,
         }))
     }
-}
-
-fn of(
-    tensors: &HashMap<String, Tensor>,
-    path: &Path,
-    name: &str,
-    len: usize,
-) -> std::result::Result<Vec<f32>, CheckpointError> {
-    numbers(tensors, path, name, len)
 }
