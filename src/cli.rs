@@ -299,9 +299,9 @@ pub struct EvalArgs {
     /// The paper's protocol: `synthetic` sees 4 images and predicts 11, `mit` sees 5 and predicts 37
     #[arg(long, value_enum, default_value_t)]
     pub preset: EvalPreset,
-    /// Split to score, where the dataset names splits
-    #[arg(long, value_parser = parse_split, default_value = "test")]
-    pub split: Split,
+    /// Split to score [default: test, or val where the dataset has no test split]
+    #[arg(long, value_parser = parse_split)]
+    pub split: Option<Split>,
     /// c, the images seen before the rollout [default: the preset's]
     #[arg(long)]
     pub context: Option<usize>,

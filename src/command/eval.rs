@@ -16,12 +16,13 @@ use self::scores::{Identity, ScoreFile};
 use super::{open, sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
 use crate::data::Dataset;
-use crate::episode::{Episode, EpisodeSource};
+use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::score::{Contest, EpisodeScores, score};
 use crate::eval::summary::summarise;
 use crate::eval::{markdown, tables};
 use crate::export::table::{write_csv, write_parquet};
+use crate::model::checkpoint::write_atomic;
 use crate::model::observation::{self, suits};
 
 /// Episodes between two looks at whether to stop, and between two writes.
@@ -34,11 +35,11 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     let folders = folders(args, &path)?;
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
     let contest = contest(args, &folders)?;
-    let wanted = wanted(args, &dataset, &folders[0]);
+    let (split, wanted) = wanted(args, &dataset, &folders[0]);
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
     }
-    let identity = Identity::of(&contest, &folders, &dataset, args.split)?;
+    let identity = Identity::of(&contest, &folders, &dataset, split)?;
     let mut file = match &args.out {
         Some(out) => ScoreFile::open(out, &identity, args.shard)?,
         None => ScoreFile::default(),
@@ -85,7 +86,14 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         return Ok(());
     }
     let order: Vec<&str> = wanted.iter().map(|&i| id(i)).collect();
-    conclude(args, &contest, &file.in_order(&order), &dataset, &folders)
+    let scored = Scored {
+        contest: &contest,
+        all: &file.in_order(&order),
+        split,
+        dataset: &dataset,
+        folders: &folders,
+    };
+    conclude(args, &scored)
 }
 
 /// The checkpoints: those that are named, those beside the data, the sample's.
@@ -130,11 +138,16 @@ fn contest(args: &EvalArgs, folders: &[PathBuf]) -> anyhow::Result<Contest> {
     })
 }
 
-/// The episodes of the split.
-fn wanted(args: &EvalArgs, dataset: &Dataset, folder: &Path) -> Vec<usize> {
-    let splits = dataset.splits(open::split_seed(folder)).into_iter();
-    let of_split = splits.enumerate().filter(|(_, split)| *split == args.split);
-    of_split.map(|(index, _)| index).collect()
+/// The split that is scored, and its episodes.
+fn wanted(args: &EvalArgs, dataset: &Dataset, folder: &Path) -> (Split, Vec<usize>) {
+    let splits = dataset.splits(open::split_seed(folder));
+    let split = args.split.unwrap_or_else(|| {
+        let has = |split: &Split| splits.contains(split);
+        let first = [Split::Test, Split::Val].into_iter().find(has);
+        first.unwrap_or(Split::Test)
+    });
+    let of_split = splits.iter().enumerate().filter(|(_, own)| **own == split);
+    (split, of_split.map(|(index, _)| index).collect())
 }
 
 /// Scores an episode; none, and a word on standard error, for one that cannot be read or is too short.
@@ -193,30 +206,34 @@ fn load(
     Ok(enough.then_some(episode))
 }
 
+/// Scores, and what they are of.
+struct Scored<'a> {
+    contest: &'a Contest,
+    all: &'a [EpisodeScores],
+    split: Split,
+    dataset: &'a Dataset,
+    folders: &'a [PathBuf],
+}
+
 /// Says and writes what the scores come to.
-fn conclude(
-    args: &EvalArgs,
-    contest: &Contest,
-    all: &[EpisodeScores],
-    dataset: &Dataset,
-    folders: &[PathBuf],
-) -> anyhow::Result<()> {
+fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
+    let Scored { contest, all, .. } = *scored;
     let Some(summary) = summarise(contest, all)? else {
         bail!(
             "{}: no episode of split `{}` with {} images or more; choose another --split, --context or --horizon",
-            dataset.name(),
-            args.split.name(),
+            scored.dataset.name(),
+            scored.split.name(),
             contest.protocol.images()
         );
     };
-    let text = markdown::markdown(&summary);
+    let text = markdown::markdown(&summary, scored.split.name());
     if let Some(out) = &args.out {
         for table in tables::tables(contest, all, &summary) {
             write_csv(&table, &out.join(format!("{}.csv", table.name)))?;
             write_parquet(&table, &out.join(format!("{}.parquet", table.name)))?;
         }
-        figures::write(contest, all, &summary, dataset, folders, out)?;
-        crate::model::checkpoint::write_atomic(&out.join("tables.md"), text.as_bytes())?;
+        figures::write(scored, &summary, out)?;
+        write_atomic(&out.join("tables.md"), text.as_bytes())?;
         eprintln!("tables and figures: {}", out.display());
     }
     if args.json {

@@ -9,11 +9,11 @@ use super::spread::Spread;
 use super::summary::{Quality, Summary};
 use crate::measure::bootstrap::Interval;
 
-/// Every table of a summary.
-pub fn markdown(summary: &Summary) -> String {
+/// Every table of a summary of episodes of a split.
+pub fn markdown(summary: &Summary, split: &str) -> String {
     let Protocol { context, horizon } = summary.protocol;
     let mut text = format!(
-        "{} episodes, {context} images seen, {horizon} predicted. ± is one standard deviation over episodes, brackets are \
+        "{} episodes of split `{split}`, {context} images seen, {horizon} predicted. ± is one standard deviation over episodes, brackets are \
          95 % bootstrap intervals over the same episodes.\n",
         summary.episodes
     );

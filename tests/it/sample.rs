@@ -44,14 +44,38 @@ fn an_expert_switched_off_changes_shares_position_and_prediction() {
 }
 
 #[test]
-fn the_model_is_ahead_of_both_trivial_predictors_at_every_horizon_from_two_on() {
-    let report: Value = serde_json::from_str(&answer(poescope().args(["eval", "--json"]))).unwrap();
+fn the_models_are_ahead_of_both_trivial_predictors_at_every_horizon_from_two_on() {
+    for options in [
+        &["eval", "--json"][..],
+        &["eval", "--json", "--data", "pybullet"],
+    ] {
+        let report: Value = serde_json::from_str(&answer(poescope().args(options))).unwrap();
+        ahead(&report);
+    }
+}
+
+fn ahead(report: &Value) {
     let row = &report["quality"][0];
     let ahead = row["ahead"].as_array().unwrap();
     assert_eq!(ahead.len(), 11);
     for over in ahead[1..].iter().flat_map(|both| both.as_array().unwrap()) {
         assert!(over["low"].as_f64().unwrap() > 0.0, "{row}");
     }
+}
+
+#[test]
+fn the_second_sample_opens_by_its_name_with_its_own_model() {
+    let mut command = poescope();
+    command.env("NO_COLOR", "1");
+    command.args([
+        "--data", "pybullet", "--print", "--size", "120x40", "--keys", "lllll",
+    ]);
+    let frame = answer(&mut command);
+    assert!(
+        frame.contains("pybullet-val-0000") && frame.contains("v-h-p"),
+        "{frame}"
+    );
+    assert!(line(&frame, "1 V vision").contains('%'), "{frame}");
 }
 
 #[test]
@@ -66,5 +90,5 @@ fn what_ships_is_small() {
             path.metadata().unwrap().len()
         }
     }
-    assert!(bytes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_data")) < 20_000_000);
+    assert!(bytes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_data")) < 60_000_000);
 }

@@ -1,8 +1,8 @@
 //! The paper's figures, into the folder of the tables.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use crate::data::Dataset;
+use super::Scored;
 use crate::episode::EpisodeSource;
 use crate::eval::prediction::open_loop;
 use crate::eval::score::{Contest, EpisodeScores};
@@ -15,16 +15,10 @@ use crate::train::metrics::METRICS;
 const STRIPS: usize = 3;
 
 /// Writes them all.
-pub fn write(
-    contest: &Contest,
-    all: &[EpisodeScores],
-    summary: &Summary,
-    dataset: &Dataset,
-    folders: &[PathBuf],
-    out: &Path,
-) -> anyhow::Result<()> {
+pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Result<()> {
+    let Scored { contest, all, .. } = *scored;
     let labels = contest.candidates.iter().map(|c| c.label.clone());
-    let curves = labels.zip(folders.iter().map(|folder| curve(folder)));
+    let curves = labels.zip(scored.folders.iter().map(|folder| curve(folder)));
     if let Some(plot) = figures::training(curves.collect()) {
         plot.save(out, "training")?;
     }
@@ -47,13 +41,7 @@ pub fn write(
     let mut strips = Vec::new();
     for (episodes, label) in [(worst, &labels[0]), (best, &labels[1])] {
         for index in episodes {
-            strips.push(strip(
-                contest,
-                &all[index],
-                [first, second],
-                dataset,
-                label,
-            )?);
+            strips.push(strip(scored, &all[index], [first, second], label)?);
         }
     }
     let side = contest.candidates[0].inspector.model().config.frame_size;
@@ -91,12 +79,14 @@ fn rivals(contest: &Contest) -> Option<[usize; 2]> {
 }
 
 fn strip(
-    contest: &Contest,
+    scored: &Scored<'_>,
     scores: &EpisodeScores,
     rivals: [usize; 2],
-    dataset: &Dataset,
     worse: &str,
 ) -> anyhow::Result<Strip> {
+    let Scored {
+        contest, dataset, ..
+    } = *scored;
     let protocol = contest.protocol;
     let layout = contest.candidates[0].inspector.model().config.layout();
     let mut metas = dataset.metas().iter();
