@@ -12,11 +12,11 @@ use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-use self::scores::{Identity, ScoreFile};
+use self::scores::{Identity, Line, ScoreFile};
 use super::{open, sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
 use crate::data::Dataset;
-use crate::episode::{Episode, EpisodeSource, Split};
+use crate::episode::{EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::score::{Contest, EpisodeScores, score};
 use crate::eval::summary::summarise;
@@ -45,17 +45,16 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         None => ScoreFile::default(),
     };
     let own: Vec<usize> = match args.shard {
-        Some((i, n)) => wanted.iter().copied().skip(i - 1).step_by(n).collect(),
-        None => wanted.clone(),
+        Some((i, n)) => wanted.into_iter().skip(i - 1).step_by(n).collect(),
+        None => wanted,
     };
-    let id = |index: usize| dataset.metas()[index].id.as_str();
-    let left: Vec<usize> = own.iter().copied().filter(|&i| !file.has(id(i))).collect();
-    if args.merge && !left.is_empty() {
+    let left: Vec<usize> = own.iter().copied().filter(|&i| !file.has(i)).collect();
+    if let (true, Some(&first)) = (args.merge, left.first()) {
         bail!(
             "{} of {} episodes are not scored yet, `{}` among them; run their shards, or leave out --merge",
             left.len(),
             own.len(),
-            id(left[0])
+            dataset.metas()[first].id
         );
     }
     let bar = ProgressBar::new(own.len() as u64);
@@ -71,12 +70,13 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
                 None => "stopped",
             });
         }
-        let scored: Vec<Option<EpisodeScores>> = chunk
-            .par_iter()
-            .map(|&index| one(&contest, &dataset, index, &path))
-            .collect::<anyhow::Result<_>>()?;
-        for scores in scored.into_iter().flatten() {
-            file.push(scores)?;
+        let each = chunk.par_iter();
+        let lines = each.map(|&index| one(&contest, &dataset, index, &path));
+        for line in lines.collect::<anyhow::Result<Vec<Line>>>()? {
+            if let Some(why) = &line.left_out {
+                bar.suspend(|| eprintln!("left out: {why}"));
+            }
+            file.push(line)?;
         }
         bar.inc(chunk.len() as u64);
     }
@@ -85,10 +85,11 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
-    let order: Vec<&str> = wanted.iter().map(|&i| id(i)).collect();
+    let (indices, all) = file.scores();
     let scored = Scored {
         contest: &contest,
-        all: &file.in_order(&order),
+        all: &all,
+        indices: &indices,
         split,
         dataset: &dataset,
         folders: &folders,
@@ -150,66 +151,52 @@ fn wanted(args: &EvalArgs, dataset: &Dataset, folder: &Path) -> (Split, Vec<usiz
     (split, of_split.map(|(index, _)| index).collect())
 }
 
-/// Scores an episode; none, and a word on standard error, for one that cannot be read or is too short.
-fn one(
-    contest: &Contest,
-    dataset: &Dataset,
-    index: usize,
-    path: &Path,
-) -> anyhow::Result<Option<EpisodeScores>> {
-    let Some(episode) = load(contest, dataset, index, path)? else {
-        return Ok(None);
+/// Scores an episode, or says why it is left out.
+fn one(contest: &Contest, dataset: &Dataset, index: usize, path: &Path) -> anyhow::Result<Line> {
+    let left_out = |why: String| Line {
+        index,
+        left_out: Some(why),
+        scores: None,
     };
-    let scores = score(contest, &episode);
-    Ok(Some(scores.with_context(|| {
-        format!("episode `{}`", episode.meta.id)
-    })?))
-}
-
-fn load(
-    contest: &Contest,
-    dataset: &Dataset,
-    index: usize,
-    path: &Path,
-) -> anyhow::Result<Option<Episode>> {
     let first = &contest.candidates[0].inspector.model().config;
     let episode = match dataset.load(index, first.layout()) {
         Ok(episode) => episode,
-        Err(error) => {
-            eprintln!("left out: {error}");
-            return Ok(None);
-        }
+        Err(error) => return Ok(left_out(error.to_string())),
     };
+    let id = &episode.meta.id;
     for candidate in &contest.candidates {
         let config = &candidate.inspector.model().config;
         let missing = observation::missing(config, &episode);
         if !missing.is_empty() {
             bail!(
-                "{}: episode `{}` lacks {}, which model `{}` sees",
+                "{}: episode `{id}` lacks {}, which model `{}` sees",
                 path.display(),
-                episode.meta.id,
                 missing.join(", "),
                 candidate.label
             );
         }
         suits(config, &episode).with_context(|| path.display().to_string())?;
     }
-    let enough = episode.steps() >= contest.protocol.images();
-    if !enough {
-        eprintln!(
-            "left out: episode `{}` has {} images of {}",
-            episode.meta.id,
-            episode.steps(),
-            contest.protocol.images()
-        );
+    let (steps, images) = (episode.steps(), contest.protocol.images());
+    if steps < images {
+        return Ok(left_out(format!(
+            "episode `{id}` has {steps} images of {images}"
+        )));
     }
-    Ok(enough.then_some(episode))
+    let scores = score(contest, &episode).with_context(|| format!("episode `{id}`"))?;
+    Ok(Line {
+        index,
+        left_out: None,
+        scores: Some(scores),
+    })
 }
 
 /// Scores, and what they are of.
 struct Scored<'a> {
     contest: &'a Contest,
     all: &'a [EpisodeScores],
+    /// Their places in the dataset.
+    indices: &'a [usize],
     split: Split,
     dataset: &'a Dataset,
     folders: &'a [PathBuf],

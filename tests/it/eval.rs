@@ -213,11 +213,12 @@ fn tables_say_the_same_in_every_format() {
     let scores = fs::read_to_string(out.join("scores.jsonl")).unwrap();
     for line in scores.lines().skip(1) {
         let episode: Value = serde_json::from_str(line).unwrap();
-        let credit = &episode["subjects"][2]["credit"];
+        let subjects = &episode["scores"]["subjects"];
+        let credit = &subjects[2]["credit"];
         let parts = credit["squared_error"].as_array().unwrap().iter();
         let sum: f64 = parts.map(|part| part.as_f64().unwrap()).sum();
         assert!((sum - credit["squared_error_gain"].as_f64().unwrap()).abs() < 1e-9);
-        assert!(episode["subjects"][0]["credit"].is_null());
+        assert!(subjects[0]["credit"].is_null());
     }
 }
 
@@ -265,4 +266,42 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
             "{state}: {said}"
         );
     }
+}
+
+#[test]
+fn episodes_of_one_name_stay_apart_and_short_ones_are_left_out_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = folder.path().join("data");
+    fs::create_dir(&data).unwrap();
+    for (file, steps, seed) in [
+        ("a.mcap", "9", "1"),
+        ("b.mcap", "9", "2"),
+        ("c.mcap", "7", "3"),
+    ] {
+        let options = ["--steps", steps, "--seed", seed, "--split", "test"];
+        simulated(data.join(file), 2, &options);
+    }
+    let model = untrained(folder.path().join("model"), three_experts());
+    let out = folder.path().join("out");
+    let eval = |options: &[&str]| {
+        let mut eval = poescope();
+        eval.args(["eval", "--json", "--horizon", "5"])
+            .args(options);
+        eval.arg("--data").arg(&data).arg("--model").arg(&model);
+        eval.arg("--out").arg(&out).output().unwrap()
+    };
+    let episodes = |output: &std::process::Output| {
+        let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+        report["episodes"].as_u64().unwrap()
+    };
+    let first = eval(&[]);
+    let said = String::from_utf8_lossy(&first.stderr).into_owned();
+    assert_eq!(said.matches("has 7 images of 9").count(), 2, "{said}");
+    assert_eq!(episodes(&first), 4);
+    let merged = eval(&["--merge"]);
+    let said = String::from_utf8_lossy(&merged.stderr).into_owned();
+    assert!(
+        !said.contains("left out") && episodes(&merged) == 4,
+        "{said}"
+    );
 }

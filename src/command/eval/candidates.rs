@@ -1,6 +1,7 @@
 //! The models that are compared, with what was fitted for them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use rayon::prelude::*;
@@ -14,7 +15,6 @@ use crate::model::checkpoint::{self, MEAN_FRAME, PROBE, REPORT};
 use crate::model::config::Config;
 use crate::model::inspect::Inspector;
 use crate::model::probe::Regressors;
-use std::sync::Arc;
 
 /// Opens the checkpoints. They must see episodes in the same sizes.
 pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {

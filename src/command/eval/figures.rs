@@ -5,7 +5,7 @@ use std::path::Path;
 use super::Scored;
 use crate::episode::EpisodeSource;
 use crate::eval::prediction::open_loop;
-use crate::eval::score::{Contest, EpisodeScores};
+use crate::eval::score::Contest;
 use crate::eval::setting::Setting;
 use crate::eval::summary::{Summary, extremes};
 use crate::export::figures::{self, Frames, Strip};
@@ -41,7 +41,7 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
     let mut strips = Vec::new();
     for (episodes, label) in [(worst, &labels[0]), (best, &labels[1])] {
         for index in episodes {
-            strips.push(strip(scored, &all[index], [first, second], label)?);
+            strips.push(strip(scored, index, [first, second], label)?);
         }
     }
     let side = contest.candidates[0].inspector.model().config.frame_size;
@@ -78,22 +78,20 @@ fn rivals(contest: &Contest) -> Option<[usize; 2]> {
     )
 }
 
+/// Truth and both rivals of the episode at `place` among the scores.
 fn strip(
     scored: &Scored<'_>,
-    scores: &EpisodeScores,
+    place: usize,
     rivals: [usize; 2],
     worse: &str,
 ) -> anyhow::Result<Strip> {
     let Scored {
         contest, dataset, ..
     } = *scored;
+    let scores = &scored.all[place];
     let protocol = contest.protocol;
     let layout = contest.candidates[0].inspector.model().config.layout();
-    let mut metas = dataset.metas().iter();
-    let index = metas
-        .position(|meta| meta.id == scores.episode)
-        .unwrap_or_default();
-    let episode = dataset.load(index, layout)?;
+    let episode = dataset.load(scored.indices[place], layout)?;
     let mut rows = vec![Frames {
         label: "truth".to_owned(),
         frames: episode.frames[protocol.context..protocol.images()]

@@ -1,6 +1,6 @@
 //! The score file: a line an episode, so that a run that was stopped goes on, and shards come together.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions};
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -51,10 +51,23 @@ impl Identity {
     }
 }
 
-/// Scores so far, and where new ones go.
+/// What came of an episode: a further line of a score file.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct Line {
+    /// Its place in the dataset: names need not be unique in a folder of files.
+    pub index: usize,
+    /// Why it could not be scored.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub left_out: Option<String>,
+    /// Its scores.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scores: Option<EpisodeScores>,
+}
+
+/// Lines so far, and where new ones go.
 #[derive(Debug, Default)]
 pub struct ScoreFile {
-    scores: HashMap<String, EpisodeScores>,
+    lines: BTreeMap<usize, Line>,
     file: Option<(PathBuf, File)>,
 }
 
@@ -69,13 +82,13 @@ impl ScoreFile {
             Some((i, n)) => format!("scores-{i}-of-{n}.jsonl"),
             None => "scores.jsonl".to_owned(),
         };
-        let mut scores = HashMap::new();
+        let mut lines = BTreeMap::new();
         let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
         for entry in entries {
             let name = entry?.file_name();
             let name = name.to_string_lossy();
             if name.starts_with("scores") && name.ends_with(".jsonl") {
-                read(&folder.join(&*name), identity, &mut scores)?;
+                read(&folder.join(&*name), identity, &mut lines)?;
             }
         }
         let path = folder.join(own);
@@ -89,53 +102,48 @@ impl ScoreFile {
             writeln!(file, "{}", serde_json::to_string(identity)?).with_context(failed)?;
         }
         Ok(Self {
-            scores,
+            lines,
             file: Some((path, file)),
         })
     }
 
-    /// Whether an episode is scored.
-    pub fn has(&self, episode: &str) -> bool {
-        self.scores.contains_key(episode)
+    /// Whether an episode is done with.
+    pub fn has(&self, index: usize) -> bool {
+        self.lines.contains_key(&index)
     }
 
-    /// Adds an episode's scores.
-    pub fn push(&mut self, scores: EpisodeScores) -> anyhow::Result<()> {
+    /// Adds what came of an episode.
+    pub fn push(&mut self, line: Line) -> anyhow::Result<()> {
         if let Some((path, file)) = &mut self.file {
-            let line = serde_json::to_string(&scores)? + "\n";
+            let text = serde_json::to_string(&line)? + "\n";
             // One write a line: a kill leaves at most the last one torn.
-            file.write_all(line.as_bytes())
+            file.write_all(text.as_bytes())
                 .with_context(|| path.display().to_string())?;
         }
-        self.scores.insert(scores.episode.clone(), scores);
+        self.lines.insert(line.index, line);
         Ok(())
     }
 
-    /// The scores of the episodes, in their order.
-    pub fn in_order(mut self, episodes: &[&str]) -> Vec<EpisodeScores> {
-        episodes
-            .iter()
-            .filter_map(|id| self.scores.remove(*id))
-            .collect()
+    /// Places and scores of the episodes that have some, in the dataset's order.
+    pub fn scores(self) -> (Vec<usize>, Vec<EpisodeScores>) {
+        let lines = self.lines.into_values();
+        lines
+            .filter_map(|line| Some((line.index, line.scores?)))
+            .unzip()
     }
 }
 
 /// Reads a score file; a torn last line is cut off.
-fn read(
-    path: &Path,
-    identity: &Identity,
-    scores: &mut HashMap<String, EpisodeScores>,
-) -> anyhow::Result<()> {
+fn read(path: &Path, identity: &Identity, lines: &mut BTreeMap<usize, Line>) -> anyhow::Result<()> {
     let failed = || path.display().to_string();
-    let mut lines = BufReader::new(File::open(path).with_context(failed)?);
-    let (mut whole, mut line) = (0, Vec::new());
-    let mut first = true;
-    while lines.read_until(b'\n', &mut line).with_context(failed)? > 0 {
-        if line.last() != Some(&b'\n') {
+    let mut file = BufReader::new(File::open(path).with_context(failed)?);
+    let (mut whole, mut text) = (0, Vec::new());
+    while file.read_until(b'\n', &mut text).with_context(failed)? > 0 {
+        if text.last() != Some(&b'\n') {
             break;
         }
-        if first {
-            let known: Identity = serde_json::from_slice(&line).with_context(|| {
+        if whole == 0 {
+            let known: Identity = serde_json::from_slice(&text).with_context(|| {
                 format!("{}: not a score file; choose another --out", path.display())
             })?;
             if known != *identity {
@@ -144,16 +152,15 @@ fn read(
                     path.display()
                 );
             }
-            first = false;
         } else {
-            let episode: EpisodeScores = serde_json::from_slice(&line)
+            let line: Line = serde_json::from_slice(&text)
                 .with_context(|| format!("{}: a damaged line; remove the file", path.display()))?;
-            scores.insert(episode.episode.clone(), episode);
+            lines.insert(line.index, line);
         }
-        whole += line.len() as u64;
-        line.clear();
+        whole += text.len() as u64;
+        text.clear();
     }
-    if !line.is_empty() {
+    if !text.is_empty() {
         let file = OpenOptions::new()
             .write(true)
             .open(path)
