@@ -209,6 +209,16 @@ fn tables_say_the_same_in_every_format() {
         .unwrap();
     let rmse = (sum / (EPISODES * 5) as f64).sqrt();
     assert!((row["rmse"].as_f64().unwrap() - rmse).abs() < 1e-9);
+    // Around contact the experts' shares of a belief add up to one.
+    let contact = fs::read_to_string(out.join("contact.csv")).unwrap();
+    let rows: Vec<Vec<&str>> = contact
+        .lines()
+        .map(|line| line.split(',').collect())
+        .collect();
+    let at_onset = rows.iter().filter(|row| row[0] == "v-h-p" && row[2] == "0");
+    let shares: Vec<f64> = at_onset.map(|row| row[4].parse().unwrap()).collect();
+    assert_eq!(shares.len(), 4, "{contact}");
+    assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-5);
     // Shapley values add up to what all sensors save over none, episode by episode.
     let scores = fs::read_to_string(out.join("scores.jsonl")).unwrap();
     for line in scores.lines().skip(1) {
@@ -303,5 +313,68 @@ fn episodes_of_one_name_stay_apart_and_short_ones_are_left_out_once() {
     assert!(
         !said.contains("left out") && episodes(&merged) == 4,
         "{said}"
+    );
+}
+
+#[test]
+fn the_mit_protocol_stands_beside_the_papers_numbers_which_are_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--steps", "42", "--split", "val"];
+    let data = simulated(folder.path().join("val.mcap"), 2, &options);
+    let model = untrained(folder.path().join("model"), three_experts());
+    let mut eval = poescope();
+    eval.args(["eval", "--preset", "mit"])
+        .arg("--data")
+        .arg(&data);
+    let said = answer(eval.arg("--model").arg(&model));
+    assert!(
+        said.starts_with("2 episodes of split `val`, 5 images seen, 37 predicted"),
+        "{said}"
+    );
+    assert!(said.contains("Quoted from the paper: Table 2") && said.contains("Table 3"));
+    for quoted in [
+        "| vhp (quoted) | 1.734 |",
+        "| EKF, supervised, filtered (quoted) | 1.33 |",
+    ] {
+        assert!(said.contains(quoted), "{said}");
+    }
+}
+
+#[test]
+fn seeds_stand_together_and_regressors_can_be_fitted_anew() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--steps", "9", "--split", "test"];
+    let test = simulated(folder.path().join("test.mcap"), 4, &options);
+    let options = ["--steps", "9", "--split", "train", "--seed", "5"];
+    let train = simulated(folder.path().join("train.mcap"), 12, &options);
+    let mut eval = poescope();
+    eval.args(["eval", "--json", "--horizon", "5"])
+        .arg("--data")
+        .arg(&test);
+    for seed in ["1", "2"] {
+        let model = untrained(folder.path().join(seed), three_experts());
+        fs::write(model.join("report.json"), format!("{{\"seed\": {seed}}}")).unwrap();
+        eval.arg("--model").arg(&model);
+    }
+    let report: Value = serde_json::from_str(&answer(eval.arg("--fit").arg(&train))).unwrap();
+    let labels = report["quality"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|row| &row["subject"]);
+    let labels: Vec<&str> = labels.map(|label| label.as_str().unwrap()).collect();
+    assert_eq!(labels[..2], ["v-h-p seed 1", "v-h-p seed 2"]);
+    assert_eq!(report["seeds"][0]["label"], "v-h-p");
+    assert_eq!(report["seeds"][0]["seeds"], 2);
+    let found = &report["comparisons"][0];
+    assert_eq!(
+        [&found["better"], &found["worse"]],
+        ["v-h-p", "v-h-p (prior off)"]
+    );
+    assert_eq!(found["seeds"][1], 2);
+    let regression = report["regression"].as_array().unwrap().iter();
+    assert_eq!(
+        regression.filter(|row| row["fitted_on"] == "train").count(),
+        4 * 4
     );
 }
