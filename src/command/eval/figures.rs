@@ -39,9 +39,10 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
         labels[0], labels[1]
     );
     let mut strips = Vec::new();
-    for (episodes, label) in [(worst, &labels[0]), (best, &labels[1])] {
+    for (episodes, [worse, other]) in [(worst, [0, 1]), (best, [1, 0])] {
+        let against = format!("of {} against {}", labels[worse], labels[other]);
         for index in episodes {
-            strips.push(strip(scored, index, [first, second], label)?);
+            strips.push(strip(scored, index, [first, second], &against)?);
         }
     }
     let side = contest.candidates[0].inspector.model().config.frame_size;
@@ -83,7 +84,7 @@ fn strip(
     scored: &Scored<'_>,
     place: usize,
     rivals: [usize; 2],
-    worse: &str,
+    against: &str,
 ) -> anyhow::Result<Strip> {
     let Scored {
         contest, dataset, ..
@@ -115,7 +116,7 @@ fn strip(
     }
     Ok(Strip {
         title: format!(
-            "{}: {worse} does worst; mean squared error {}",
+            "{}, among the worst {against}: mean squared error {}",
             scores.episode,
             errors.join(", ")
         ),
