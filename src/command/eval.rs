@@ -32,7 +32,11 @@ const CHUNK: usize = 16;
 pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     let stop = super::stop_on_signals()?;
     let path = sample::data(args.data.as_ref())?;
-    let folders = folders(args, &path)?;
+    let folders = if args.model.is_empty() {
+        sample::models(&path)?
+    } else {
+        args.model.clone()
+    };
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
     let contest = contest(args, &folders)?;
     let (split, wanted) = wanted(args, &dataset, &folders[0]);
@@ -95,18 +99,6 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         folders: &folders,
     };
     conclude(args, &scored)
-}
-
-/// The checkpoints: those that are named, those beside the data, the sample's.
-fn folders(args: &EvalArgs, data: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    if !args.model.is_empty() {
-        return Ok(args.model.clone());
-    }
-    let models = sample::models(data)?;
-    if models.is_empty() {
-        bail!("no model beside the data; name one with --model FOLDER");
-    }
-    Ok(models)
 }
 
 /// The models under every setting.

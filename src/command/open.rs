@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{Context, bail};
+use anyhow::Context;
 
 use super::sample;
 use crate::data::{Dataset, Role};
@@ -19,9 +19,6 @@ pub fn folders(asked: &[PathBuf], data: Option<&PathBuf>) -> anyhow::Result<Vec<
     }
     let mut models = sample::models(&sample::data(data)?)?;
     models.truncate(1);
-    if models.is_empty() {
-        bail!("no model beside the data; name one with --model FOLDER");
-    }
     Ok(models)
 }
 

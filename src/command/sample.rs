@@ -49,9 +49,12 @@ pub fn models(data: &Path) -> anyhow::Result<Vec<PathBuf>> {
     } else {
         data.parent()
     };
-    let found = around.map(checkpoints).unwrap_or_default();
+    let mut found = around.map(checkpoints).unwrap_or_default();
     if found.is_empty() {
-        return Ok(checkpoints(&folder()?));
+        found = checkpoints(&folder()?);
+    }
+    if found.is_empty() {
+        bail!("no model beside the data; name one with --model FOLDER");
     }
     Ok(found)
 }
