@@ -2,6 +2,7 @@
 
 mod candidates;
 mod figures;
+mod names;
 mod scores;
 mod settings;
 

@@ -7,10 +7,25 @@ use serde::Serialize;
 /// One side of a comparison: an average over seeds where there are several.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Side {
-    /// How it is called.
-    pub label: String,
+    /// The model's name, or the trivial predictor's.
+    pub model: String,
+    /// Of its training; empty where all have the same.
+    pub recipe: String,
+    /// Empty as trained.
+    pub setting: String,
     /// Scores of each seed, in the order of the seeds: for each an episode's means over the horizon.
     pub seeds: Vec<Vec<Means>>,
+}
+
+impl Side {
+    /// How it is called.
+    pub fn label(&self) -> String {
+        let group = format!("{} {}", self.model, self.recipe);
+        match self.setting.as_str() {
+            "" => group.trim_end().to_owned(),
+            setting => format!("{} ({setting})", group.trim_end()),
+        }
+    }
 }
 
 /// Means over the horizon of an episode.
@@ -137,8 +152,8 @@ pub fn compare(first: &Side, second: &Side) -> Option<Comparison> {
         _ => Finding::Open,
     };
     Some(Comparison {
-        better: first.label.clone(),
-        worse: second.label.clone(),
+        better: first.label(),
+        worse: second.label(),
         episodes,
         psnr_db,
         ssim: mean_95(&difference(|m| m.ssim), 0)?,
@@ -182,51 +197,75 @@ pub const TRIVIAL: [&str; 2] = ["last frame held", "mean frame"];
 pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
     let mut sides: Vec<Side> = Vec::new();
     for (place, subject) in contest.subjects.iter().enumerate() {
-        let group = &contest.candidate(subject).group;
-        let label = match subject.setting.name.as_str() {
-            "" => group.clone(),
-            name => format!("{group} ({name})"),
-        };
+        let candidate = contest.candidate(subject);
         let means = all
             .iter()
             .filter_map(|episode| episode.subjects.get(place))
             .map(|scores| Means::of(&scores.frames))
             .collect();
-        match sides.iter_mut().find(|side| side.label == label) {
+        let own = |side: &&mut Side| {
+            side.model == candidate.model
+                && side.recipe == candidate.recipe
+                && side.setting == subject.setting.name
+        };
+        match sides.iter_mut().find(own) {
             Some(side) => side.seeds.push(means),
             None => sides.push(Side {
-                label,
+                model: candidate.model.clone(),
+                recipe: candidate.recipe.clone(),
+                setting: subject.setting.name.clone(),
                 seeds: vec![means],
             }),
         }
     }
     let [held, mean] = TRIVIAL;
-    let of = |scores: fn(&EpisodeScores) -> &FrameScores| {
-        vec![all.iter().map(|e| Means::of(scores(e))).collect()]
+    let trivial = |name: &str, scores: fn(&EpisodeScores) -> &FrameScores| Side {
+        model: name.to_owned(),
+        recipe: String::new(),
+        setting: String::new(),
+        seeds: vec![all.iter().map(|e| Means::of(scores(e))).collect()],
     };
-    sides.push(Side {
-        label: held.to_owned(),
-        seeds: of(|e| &e.held),
-    });
-    sides.push(Side {
-        label: mean.to_owned(),
-        seeds: of(|e| &e.mean_frame),
-    });
+    sides.push(trivial(held, |e| &e.held));
+    sides.push(trivial(mean, |e| &e.mean_frame));
     sides
 }
 
-/// The paper's claims among the sides, each product against itself without the prior, and each row against the
-/// trivial predictors; a set without any of the paper's names has each row against the first.
+/// The paper's claims among the sides of each recipe, the first recipe against the others model by model, each product
+/// against itself without the prior, and each row against the trivial predictors; a set without any of the paper's
+/// names has each row against the first.
 pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
-    let find = |label: &str| sides.iter().find(|side| side.label == label);
-    let is_trivial = |side: &&Side| TRIVIAL.contains(&side.label.as_str());
-    let mut pairs: Vec<(&Side, &Side)> = CLAIMS
-        .iter()
-        .filter_map(|[a, b]| find(a).zip(find(b)))
-        .collect();
-    let without = |side: &Side| find(&format!("{} (prior off)", side.label));
-    pairs.extend(sides.iter().filter_map(|side| Some((side, without(side)?))));
+    let is_trivial = |side: &&Side| TRIVIAL.contains(&side.model.as_str());
     let rows: Vec<&Side> = sides.iter().filter(|side| !is_trivial(side)).collect();
+    let find = |model: &str, recipe: &str, setting: &str| {
+        let is =
+            |side: &&&Side| side.model == model && side.recipe == recipe && side.setting == setting;
+        rows.iter().find(is).copied()
+    };
+    let mut recipes: Vec<&str> = Vec::new();
+    for side in &rows {
+        if !recipes.contains(&side.recipe.as_str()) {
+            recipes.push(&side.recipe);
+        }
+    }
+    let claimed = |recipe| {
+        let pair = move |[a, b]: &[&str; 2]| find(a, recipe, "").zip(find(b, recipe, ""));
+        CLAIMS.iter().filter_map(pair)
+    };
+    let mut pairs: Vec<(&Side, &Side)> = recipes.iter().copied().flat_map(claimed).collect();
+    for &side in rows.iter().filter(|side| side.setting.is_empty()) {
+        let first = recipes
+            .first()
+            .and_then(|first| find(&side.model, first, ""));
+        pairs.extend(
+            first
+                .filter(|first| first.recipe != side.recipe)
+                .map(|first| (first, side)),
+        );
+    }
+    pairs.extend(rows.iter().filter_map(|&side| {
+        let without = find(&side.model, &side.recipe, "prior off")?;
+        side.setting.is_empty().then_some((side, without))
+    }));
     if pairs.is_empty() {
         pairs.extend(rows.iter().skip(1).map(|&row| (row, rows[0])));
     }
@@ -246,7 +285,8 @@ mod tests {
 
     type Psnr = fn(usize) -> f64;
 
-    fn side(label: &str, seeds: &[Psnr]) -> Side {
+    /// `model/recipe`, or `model/recipe/setting`.
+    fn side(name: &str, seeds: &[Psnr]) -> Side {
         let seed = |psnr: &Psnr| {
             let of = |i| Means {
                 psnr_db: psnr(i),
@@ -254,8 +294,12 @@ mod tests {
             };
             (0..40).map(of).collect()
         };
+        let mut parts = name.split('/').map(str::to_owned);
+        let mut part = || parts.next().unwrap_or_default();
         Side {
-            label: label.to_owned(),
+            model: part(),
+            recipe: part(),
+            setting: part(),
             seeds: seeds.iter().map(seed).collect(),
         }
     }
@@ -300,16 +344,26 @@ mod tests {
     #[test]
     fn the_papers_claims_are_asked_by_name() {
         let flat: Psnr = |_| 20.0;
-        let sides =
-            ["v", "vhp", "vhp (prior off)", TRIVIAL[0], TRIVIAL[1]].map(|l| side(l, &[flat]));
-        let asked: Vec<[String; 2]> = comparisons(&sides)
-            .into_iter()
-            .map(|c| [c.better, c.worse])
-            .collect();
-        assert_eq!(asked[0], ["vhp", "v"]);
-        assert_eq!(asked[1], ["vhp", "vhp (prior off)"]);
-        assert_eq!(asked.len(), 2 + 2 * 3);
-        let own = ["mine", "yours", TRIVIAL[0]].map(|l| side(l, &[flat]));
-        assert_eq!(comparisons(&own)[0].better, "yours");
+        let asked = |names: &[&str]| -> Vec<[String; 2]> {
+            let sides: Vec<Side> = names.iter().map(|name| side(name, &[flat])).collect();
+            let comparisons = comparisons(&sides).into_iter();
+            comparisons.map(|c| [c.better, c.worse]).collect()
+        };
+        let [held, mean] = TRIVIAL;
+        let of_one = asked(&["v", "vhp", "vhp//prior off", held, mean]);
+        assert_eq!(of_one[0], ["vhp", "v"]);
+        assert_eq!(of_one[1], ["vhp", "vhp (prior off)"]);
+        assert_eq!(of_one.len(), 2 + 2 * 3);
+        assert_eq!(asked(&["mine", "yours", held])[0], ["yours", "mine"]);
+        // Claims are of one recipe; recipes are compared model by model.
+        assert_eq!(
+            asked(&["v/fast", "vhp/released", "vhp/fast", "v/released"]),
+            [
+                ["vhp fast", "v fast"],
+                ["vhp released", "v released"],
+                ["vhp fast", "vhp released"],
+                ["v fast", "v released"],
+            ]
+        );
     }
 }

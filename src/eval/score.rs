@@ -17,10 +17,12 @@ use crate::model::probe::{Probe, Regressors};
 /// A trained model, and what was fitted on its training split.
 #[derive(Debug)]
 pub struct Candidate {
-    /// How it is called: the model's name, with the seed or the folder where that is not enough.
+    /// How it is called: the model's name, with recipe and seed where that is not enough.
     pub label: String,
-    /// Candidates of one group differ in their seeds alone.
-    pub group: String,
+    /// The model's name.
+    pub model: String,
+    /// What tells its recipe from the others'; empty where all have the same.
+    pub recipe: String,
     /// The seed of its training; none where its report does not say.
     pub seed: Option<u64>,
     /// The model.
@@ -31,6 +33,15 @@ pub struct Candidate {
     pub contact_newtons: Option<f32>,
     /// Its pose regressors.
     pub regressors: Option<Regressors>,
+}
+
+impl Candidate {
+    /// Its model and recipe: candidates of one group differ in their seeds alone.
+    pub fn group(&self) -> String {
+        format!("{} {}", self.model, self.recipe)
+            .trim_end()
+            .to_owned()
+    }
 }
 
 /// A candidate under a setting: a row of the tables.

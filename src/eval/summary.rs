@@ -114,7 +114,7 @@ pub fn summarise(contest: &Contest, all: &[EpisodeScores]) -> Result<Option<Summ
                 };
                 let means: Vec<f64> = side.seeds.iter().map(mean).collect();
                 Some(Seeds {
-                    label: side.label.clone(),
+                    label: side.label(),
                     seeds: means.len(),
                     psnr_db: Spread::of(&means)?,
                 })

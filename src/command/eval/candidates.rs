@@ -6,19 +6,20 @@ use std::sync::Arc;
 use anyhow::{Context, bail};
 use rayon::prelude::*;
 
+use super::names::{Recipe, name};
 use crate::command::open;
 use crate::data::{Dataset, Role};
 use crate::episode::{EpisodeSource, Split};
 use crate::eval::regression;
 use crate::eval::score::Candidate;
 use crate::model::checkpoint::{self, MEAN_FRAME, PROBE, REPORT};
-use crate::model::config::Config;
 use crate::model::inspect::Inspector;
 use crate::model::probe::Regressors;
 
 /// Opens the checkpoints. They must see episodes in the same sizes.
 pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
     let mut candidates: Vec<Candidate> = Vec::new();
+    let mut recipes: Vec<Recipe> = Vec::new();
     for folder in folders {
         let (model, probe) = checkpoint::load(folder)?;
         let path = folder.join(PROBE);
@@ -28,9 +29,11 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
             None
         };
         let report = report(folder);
+        recipes.push(Recipe::of(&model.config, report["updates"].as_u64()));
         let candidate = Candidate {
             label: String::new(),
-            group: String::new(),
+            model: String::new(),
+            recipe: String::new(),
             seed: report["seed"].as_u64(),
             contact_newtons: report["contact_newtons"].as_f64().map(|n| n as f32),
             inspector: Inspector::new(model)?,
@@ -49,7 +52,7 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
         }
         candidates.push(candidate);
     }
-    name(&mut candidates, folders);
+    name(&mut candidates, &recipes, folders);
     Ok(candidates)
 }
 
@@ -57,53 +60,6 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
 fn report(folder: &Path) -> serde_json::Value {
     let report = std::fs::read_to_string(folder.join(REPORT)).unwrap_or_default();
     serde_json::from_str(&report).unwrap_or_default()
-}
-
-/// What two seeds of one recipe have in common: all but the numbers read off the training set.
-fn recipe(config: &Config) -> Config {
-    let mut recipe = config.clone();
-    for channels in [&mut recipe.haptic, &mut recipe.proprio] {
-        channels.mean.clear();
-        channels.scale.clear();
-    }
-    recipe.training.error_weights.clear();
-    recipe.step_secs = None;
-    recipe
-}
-
-/// Names them: by the model's name, by its folder's where two recipes share that, and by the seed within a recipe.
-fn name(candidates: &mut [Candidate], folders: &[PathBuf]) {
-    let recipes: Vec<Config> = candidates
-        .iter()
-        .map(|c| recipe(&c.inspector.model().config))
-        .collect();
-    let names: Vec<String> = recipes.iter().map(|r| r.name.clone()).collect();
-    for i in 0..candidates.len() {
-        let first = recipes.iter().position(|r| *r == recipes[i]).unwrap_or(i);
-        let shared = (0..recipes.len()).any(|j| names[j] == names[i] && recipes[j] != recipes[i]);
-        let folder = folders[first]
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned());
-        let group = folder
-            .filter(|_| shared)
-            .unwrap_or_else(|| names[i].clone());
-        let seeds = recipes.iter().filter(|r| **r == recipes[i]).count();
-        candidates[i].label = match (seeds, candidates[i].seed) {
-            (1, _) => group.clone(),
-            (_, Some(seed)) => format!("{group} seed {seed}"),
-            (_, None) => format!("{group}#{}", i + 1),
-        };
-        candidates[i].group = group;
-    }
-    // The same checkpoint named twice is told apart all the same.
-    for i in 1..candidates.len() {
-        if candidates[..i]
-            .iter()
-            .any(|c| c.label == candidates[i].label)
-        {
-            candidates[i].label = format!("{}#{}", candidates[i].label, i + 1);
-        }
-    }
 }
 
 /// Fits the pose regressors on the training split of a dataset, for each as its own training cut it.

@@ -62,21 +62,21 @@ fn curve(folder: &Path) -> Vec<[f64; 2]> {
     metrics.lines().filter_map(point).collect()
 }
 
-/// The rows the strips compare: `v` and `vhp` as the paper does, else the first two models as trained.
+/// The rows the strips compare: `v` and `vhp` of one recipe as the paper does, else the first two models as trained.
 fn rivals(contest: &Contest) -> Option<[usize; 2]> {
     let trained: Vec<usize> = (0..contest.subjects.len())
         .filter(|&i| contest.subjects[i].setting == Setting::default())
         .collect();
-    let named = |name: &str| {
-        let is = |&&i: &&usize| contest.candidate(&contest.subjects[i]).group == name;
-        trained.iter().find(is).copied()
+    let candidate = |i: usize| contest.candidate(&contest.subjects[i]);
+    let of = |name: &'static str| {
+        let is = move |&i: &usize| candidate(i).model == name;
+        trained.iter().copied().filter(is)
     };
-    let others = [*trained.first()?, *trained.get(1)?];
-    Some(
-        named("v")
-            .zip(named("vhp"))
-            .map_or(others, |(v, vhp)| [v, vhp]),
-    )
+    let alike = of("v").find_map(|v| {
+        let is = |&vhp: &usize| candidate(vhp).recipe == candidate(v).recipe;
+        Some([v, of("vhp").find(is)?])
+    });
+    alike.or(Some([*trained.first()?, *trained.get(1)?]))
 }
 
 /// Truth and both rivals of the episode at `place` among the scores.

@@ -1,0 +1,206 @@
+//! What the models are called: by name, by recipe where there are several, by seed within one.
+
+use std::path::{Path, PathBuf};
+
+use crate::eval::score::Candidate;
+use crate::model::config::{Config, Preset};
+
+/// How a model came about, whichever of the named models it is: two of one recipe differ in their experts alone.
+#[derive(Debug)]
+pub(super) struct Recipe {
+    /// Without the numbers read off the training set, and without what the model's name already says.
+    config: Config,
+    /// Of its training, where its report says so.
+    updates: Option<u64>,
+}
+
+impl Recipe {
+    pub(super) fn of(config: &Config, updates: Option<u64>) -> Self {
+        let mut config = config.clone();
+        for channels in [&mut config.haptic, &mut config.proprio] {
+            channels.mean.clear();
+            channels.scale.clear();
+        }
+        config.training.error_weights.clear();
+        config.step_secs = None;
+        // A name that says which experts there are and how they are masked leaves the recipe; another stays in it.
+        let named = Config::named(&config.name).filter(|named| {
+            named.experts == config.experts
+                && named.prior_expert == config.prior_expert
+                && named.training.masks == config.training.masks
+        });
+        if named.is_some() {
+            config.name.clear();
+            config.experts.clear();
+            config.prior_expert = false;
+            config.training.masks = false;
+        }
+        Self { config, updates }
+    }
+
+    /// Whether the same was done. A budget in minutes comes to a few updates more or less.
+    fn is_like(&self, other: &Self) -> bool {
+        let near = match (self.updates, other.updates) {
+            (Some(a), Some(b)) => a.abs_diff(b) <= a.max(b) / 20,
+            (a, b) => a == b,
+        };
+        near && self.config == other.config
+    }
+
+    /// The preset of its training; the unit of force is the dataset's matter, and epochs are what updates count.
+    fn preset(&self) -> Option<Preset> {
+        if !self.config.name.is_empty() {
+            return None;
+        }
+        let own = &self.config.training;
+        Preset::ALL.into_iter().find(|&preset| {
+            let Some(mut config) = Config::preset("v", preset) else {
+                return false;
+            };
+            config.training.force_scale = own.force_scale;
+            config.training.epochs = own.epochs;
+            config.training == *own
+        })
+    }
+
+    /// What to call it: the shortest words first, the surest last.
+    fn words(&self, folder: &Path) -> [String; 3] {
+        let path = folder.display().to_string();
+        let own = folder
+            .file_name()
+            .map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
+        let Some(preset) = self.preset() else {
+            return [own.clone(), own, path];
+        };
+        let counted = self
+            .updates
+            .map(|n| format!("{}, {n} updates", preset.name()));
+        [preset.name().to_owned(), counted.unwrap_or(own), path]
+    }
+}
+
+/// Names the candidates; each has its recipe and folder.
+pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[PathBuf]) {
+    // The first candidate of each recipe.
+    let mut kinds: Vec<usize> = Vec::new();
+    for (i, recipe) in recipes.iter().enumerate() {
+        if !kinds.iter().any(|&kind| recipes[kind].is_like(recipe)) {
+            kinds.push(i);
+        }
+    }
+    let words: Vec<[String; 3]> = kinds
+        .iter()
+        .map(|&kind| recipes[kind].words(&folders[kind]))
+        .collect();
+    let called = |kind: usize| {
+        let tells = |level: &usize| {
+            let same = words.iter().filter(|w| w[*level] == words[kind][*level]);
+            same.count() == 1
+        };
+        words[kind][(0..2).find(tells).unwrap_or(2)].clone()
+    };
+    for (candidate, recipe) in candidates.iter_mut().zip(recipes) {
+        candidate.model = candidate.inspector.model().config.name.clone();
+        let kind = kinds.iter().position(|&kind| recipes[kind].is_like(recipe));
+        candidate.recipe = kind
+            .filter(|_| kinds.len() > 1)
+            .map_or_else(String::new, called);
+    }
+    let groups: Vec<String> = candidates.iter().map(Candidate::group).collect();
+    for (i, candidate) in candidates.iter_mut().enumerate() {
+        let alone = groups.iter().filter(|group| **group == groups[i]).count() == 1;
+        candidate.label = match candidate.seed {
+            _ if alone => groups[i].clone(),
+            Some(seed) => format!("{} seed {seed}", groups[i]),
+            None => format!("{}#{}", groups[i], i + 1),
+        };
+    }
+    // The same checkpoint named twice is told apart all the same.
+    for i in 1..candidates.len() {
+        let label = candidates[i].label.clone();
+        if candidates[..i].iter().any(|other| other.label == label) {
+            candidates[i].label = format!("{label}#{}", i + 1);
+        }
+    }
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test may stop here")]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::model::inspect::Inspector;
+    use candle_core::Device;
+
+    /// Labels of `(model, preset, updates, folder)`, the first of them changed.
+    fn called(runs: &[(&str, Preset, u64, &str)], change: fn(&mut Config)) -> Vec<String> {
+        let mut recipes = Vec::new();
+        let mut candidates = Vec::new();
+        for (i, &(name, preset, updates, _)) in runs.iter().enumerate() {
+            let mut config = Config::preset(name, preset).unwrap();
+            config.hidden = 8;
+            config.training.error_weights = vec![1.0; i % 2];
+            if i == 0 {
+                change(&mut config);
+            }
+            recipes.push(Recipe::of(&config, Some(updates)));
+            config.training.error_weights.clear();
+            candidates.push(Candidate {
+                label: String::new(),
+                model: String::new(),
+                recipe: String::new(),
+                seed: Some(i as u64),
+                contact_newtons: None,
+                inspector: Inspector::new(Model::new(config, 0, &Device::Cpu).unwrap()).unwrap(),
+                probe: None,
+                regressors: None,
+            });
+        }
+        let folders: Vec<PathBuf> = runs.iter().map(|run| run.3.into()).collect();
+        name(&mut candidates, &recipes, &folders);
+        candidates.into_iter().map(|c| c.label).collect()
+    }
+
+    #[test]
+    fn a_label_says_what_differs_and_no_more() {
+        use Preset::{Fast, Released};
+        let same: fn(&mut Config) = |_| {};
+        let runs = [
+            ("v", Fast, 9, "a"),
+            ("vhp", Fast, 9, "b"),
+            ("v-h-p", Fast, 9, "c"),
+        ];
+        assert_eq!(called(&runs, same), ["v", "vhp", "v-h-p"]);
+        let runs = [
+            ("v", Fast, 9, "a"),
+            ("vhp", Fast, 9, "b"),
+            ("vhp", Fast, 9, "c"),
+        ];
+        assert_eq!(called(&runs, same), ["v", "vhp seed 1", "vhp seed 2"]);
+        let runs = [
+            ("v", Fast, 9, "a"),
+            ("v", Released, 9, "b"),
+            ("vhp", Released, 8, "c"),
+        ];
+        assert_eq!(called(&runs[..2], same), ["v fast", "v released"]);
+        // Updates are said where they tell recipes apart.
+        assert_eq!(
+            called(&runs, same),
+            ["v fast", "v released, 9 updates", "vhp released, 8 updates"]
+        );
+        // A budget in minutes does not come to the same number.
+        let runs = [("v", Fast, 995, "a"), ("v", Fast, 1003, "b")];
+        assert_eq!(called(&runs, same), ["v seed 0", "v seed 1"]);
+        // One that was changed by hand is called by its folder.
+        let runs = [("v", Fast, 9, "runs/a"), ("v", Fast, 9, "runs/b")];
+        assert_eq!(
+            called(&runs, |config| config.training.kl_weight = 2.0),
+            ["v a", "v fast"]
+        );
+        // And a name that does not say what it is, is no recipe that others share.
+        assert_eq!(
+            called(&runs, |config| config.training.masks = true),
+            ["v a", "v fast"]
+        );
+    }
+}
