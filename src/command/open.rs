@@ -68,7 +68,11 @@ pub fn model(folder: &Path) -> anyhow::Result<Arc<dyn Predictor>> {
 
 /// The seed that the model's training cut its validation split by; 0 where its report does not say.
 pub fn split_seed(folder: &Path) -> u64 {
+    report(folder)["seed"].as_u64().unwrap_or(0)
+}
+
+/// What a checkpoint's training said of itself; null where it did not.
+pub fn report(folder: &Path) -> serde_json::Value {
     let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
-    let report: serde_json::Value = serde_json::from_str(&report).unwrap_or_default();
-    report["seed"].as_u64().unwrap_or(0)
+    serde_json::from_str(&report).unwrap_or_default()
 }

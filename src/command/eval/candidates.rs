@@ -12,7 +12,7 @@ use crate::data::{Dataset, Role};
 use crate::episode::{EpisodeSource, Split};
 use crate::eval::regression;
 use crate::eval::score::Candidate;
-use crate::model::checkpoint::{self, MEAN_FRAME, PROBE, REPORT};
+use crate::model::checkpoint::{self, MEAN_FRAME, PROBE};
 use crate::model::inspect::Inspector;
 use crate::model::probe::Regressors;
 
@@ -28,7 +28,7 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
         } else {
             None
         };
-        let report = report(folder);
+        let report = open::report(folder);
         recipes.push(Recipe::of(&model.config, report["updates"].as_u64()));
         let candidate = Candidate {
             label: String::new(),
@@ -54,12 +54,6 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
     }
     name(&mut candidates, &recipes, folders);
     Ok(candidates)
-}
-
-/// What training said of itself; null where it did not.
-fn report(folder: &Path) -> serde_json::Value {
-    let report = std::fs::read_to_string(folder.join(REPORT)).unwrap_or_default();
-    serde_json::from_str(&report).unwrap_or_default()
 }
 
 /// Fits the pose regressors on the training split of a dataset, for each as its own training cut it.

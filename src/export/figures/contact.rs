@@ -26,13 +26,14 @@ pub fn contact(summary: &Summary) -> Option<Plot> {
         for expert in Expert::ALL {
             let own = |a: &&Aligned| a.subject == *subject && a.expert == expert;
             let rows: Vec<_> = summary.aligned.iter().filter(own).collect();
-            let Some(first) = rows.first() else { continue };
+            if rows.is_empty() {
+                continue;
+            }
             let style = style::expert(expert);
             if !named.iter().any(|(label, _)| label == expert.name()) {
                 named.push((expert.name().to_owned(), style.clone()));
             }
             series.push(Series {
-                label: first.expert.name().to_owned(),
                 style,
                 points: rows
                     .iter()

@@ -40,7 +40,6 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
             let cross = [[-arm, 0.0], [arm, 0.0], [0.0, 0.0], [0.0, -arm], [0.0, arm]];
             let cross = cross.map(|[x, y]| [centre[0] + x, centre[1] + y]).to_vec();
             let line = |points| Series {
-                label: r.subject.clone(),
                 style: style.clone(),
                 points,
                 band: Vec::new(),

@@ -23,7 +23,6 @@ pub fn horizons(summary: &Summary) -> Plot {
             let points = || q.horizons.iter().map(|h| h[k]).enumerate();
             let trivial = TRIVIAL.contains(&q.subject.as_str());
             Series {
-                label: q.subject.clone(),
                 style: style::model(&q.subject, &labels),
                 points: points().map(|(h, s)| [h as f64 + 1.0, s.mean]).collect(),
                 band: if trivial {

@@ -1,25 +1,24 @@
 //! How runs went.
 
 use super::style;
-use crate::export::plot::{Panel, Plot, Series, Style};
+use crate::export::plot::{Panel, Plot, Series};
 
 /// PSNR on validation episodes against updates, mean over the horizon; none where no run left a curve.
 pub fn training(curves: Vec<(String, Vec<[f64; 2]>)>) -> Option<Plot> {
-    let labels: Vec<String> = curves.iter().map(|(label, _)| label.clone()).collect();
-    let labels: Vec<&str> = labels.iter().map(String::as_str).collect();
-    let series: Vec<Series> = curves
+    let curves: Vec<(String, Vec<[f64; 2]>)> = curves
         .into_iter()
         .filter(|(_, points)| points.len() > 1)
-        .map(|(label, points)| Series {
-            style: style::model(&label, &labels),
-            label,
-            points,
+        .collect();
+    let labels: Vec<&str> = curves.iter().map(|(label, _)| label.as_str()).collect();
+    let named = style::named(&labels);
+    let series = named
+        .iter()
+        .zip(&curves)
+        .map(|((_, style), (_, points))| Series {
+            style: style.clone(),
+            points: points.clone(),
             band: Vec::new(),
         })
-        .collect();
-    let named: Vec<(String, Style)> = series
-        .iter()
-        .map(|s| (s.label.clone(), s.style.clone()))
         .collect();
     let panel = Panel {
         size: [560.0, 320.0],

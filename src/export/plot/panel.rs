@@ -15,8 +15,6 @@ pub struct Style {
 /// A curve, with a band around it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// How it is called.
-    pub label: String,
     /// How it looks.
     pub style: Style,
     /// Its points; those that are not finite are left out.
