@@ -1,6 +1,6 @@
 //! Which of two is better, on the same episodes, and whether that can be said at all.
 
-use super::score::{Contest, EpisodeScores, FrameScores};
+use super::score::{Contest, EpisodeScores, FrameScores, group};
 use crate::measure::bootstrap::{Interval, mean_95};
 use serde::Serialize;
 
@@ -20,10 +20,10 @@ pub struct Side {
 impl Side {
     /// How it is called.
     pub fn label(&self) -> String {
-        let group = format!("{} {}", self.model, self.recipe);
+        let group = group(&self.model, &self.recipe);
         match self.setting.as_str() {
-            "" => group.trim_end().to_owned(),
-            setting => format!("{} ({setting})", group.trim_end()),
+            "" => group,
+            setting => format!("{group} ({setting})"),
         }
     }
 }
@@ -204,14 +204,14 @@ pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
             .map(|scores| Means::of(&scores.frames))
             .collect();
         let own = |side: &&mut Side| {
-            side.model == candidate.model
+            side.model == candidate.model()
                 && side.recipe == candidate.recipe
                 && side.setting == subject.setting.name
         };
         match sides.iter_mut().find(own) {
             Some(side) => side.seeds.push(means),
             None => sides.push(Side {
-                model: candidate.model.clone(),
+                model: candidate.model().to_owned(),
                 recipe: candidate.recipe.clone(),
                 setting: subject.setting.name.clone(),
                 seeds: vec![means],

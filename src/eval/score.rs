@@ -19,8 +19,6 @@ use crate::model::probe::{Probe, Regressors};
 pub struct Candidate {
     /// How it is called: the model's name, with recipe and seed where that is not enough.
     pub label: String,
-    /// The model's name.
-    pub model: String,
     /// What tells its recipe from the others'; empty where all have the same.
     pub recipe: String,
     /// The seed of its training; none where its report does not say.
@@ -36,12 +34,20 @@ pub struct Candidate {
 }
 
 impl Candidate {
+    /// The model's name.
+    pub fn model(&self) -> &str {
+        &self.inspector.model().config.name
+    }
+
     /// Its model and recipe: candidates of one group differ in their seeds alone.
     pub fn group(&self) -> String {
-        format!("{} {}", self.model, self.recipe)
-            .trim_end()
-            .to_owned()
+        group(self.model(), &self.recipe)
     }
+}
+
+/// A model's name and what tells its recipe from the others'.
+pub fn group(model: &str, recipe: &str) -> String {
+    format!("{model} {recipe}").trim_end().to_owned()
 }
 
 /// A candidate under a setting: a row of the tables.

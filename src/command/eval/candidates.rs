@@ -32,7 +32,6 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
         recipes.push(Recipe::of(&model.config, report["updates"].as_u64()));
         let candidate = Candidate {
             label: String::new(),
-            model: String::new(),
             recipe: String::new(),
             seed: report["seed"].as_u64(),
             contact_newtons: report["contact_newtons"].as_f64().map(|n| n as f32),

@@ -69,7 +69,7 @@ fn rivals(contest: &Contest) -> Option<[usize; 2]> {
         .collect();
     let candidate = |i: usize| contest.candidate(&contest.subjects[i]);
     let of = |name: &'static str| {
-        let is = move |&i: &usize| candidate(i).model == name;
+        let is = move |&i: &usize| candidate(i).model() == name;
         trained.iter().copied().filter(is)
     };
     let alike = of("v").find_map(|v| {

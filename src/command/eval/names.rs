@@ -100,7 +100,6 @@ pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[
         words[kind][(0..2).find(tells).unwrap_or(2)].clone()
     };
     for (candidate, recipe) in candidates.iter_mut().zip(recipes) {
-        candidate.model = candidate.inspector.model().config.name.clone();
         let kind = kinds.iter().position(|&kind| recipes[kind].is_like(recipe));
         candidate.recipe = kind
             .filter(|_| kinds.len() > 1)
@@ -147,7 +146,6 @@ mod tests {
             config.training.error_weights.clear();
             candidates.push(Candidate {
                 label: String::new(),
-                model: String::new(),
                 recipe: String::new(),
                 seed: Some(i as u64),
                 contact_newtons: None,
