@@ -122,7 +122,7 @@ pub struct Recording {
     pub flags: Vec<Flag>,
 }
 
-/// Something odd that was seen in a recording: it excludes an episode from training, never from viewing.
+/// Something odd that was seen in a recording: it excludes an episode from training and from `eval`, never from viewing.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Flag {
     /// The topic it was seen on.

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::TopicArgs;
-use super::parse::{parse_shard, parse_split};
+use super::parse::{parse_images, parse_shard, parse_split};
 use crate::episode::Split;
 
 /// Arguments of `eval`.
@@ -24,10 +24,10 @@ pub struct EvalArgs {
     #[arg(long, value_parser = parse_split)]
     pub split: Option<Split>,
     /// c, the images seen before the rollout [default: the preset's]
-    #[arg(long)]
+    #[arg(long, value_parser = parse_images)]
     pub context: Option<usize>,
     /// h, the images predicted [default: the preset's]
-    #[arg(long)]
+    #[arg(long, value_parser = parse_images)]
     pub horizon: Option<usize>,
     /// Score models under these switches and damaged inputs as well, as a state string has them:
     /// `alpha=haptic:0` or `corrupt=vision:noise:0.5`; repeat for several

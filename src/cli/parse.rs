@@ -68,6 +68,16 @@ pub(super) fn parse_split(text: &str) -> Result<Split, String> {
     Split::from_name(text).ok_or_else(|| format!("{text:?} is not train, val or test"))
 }
 
+/// A number of images, of an hour at 30 Hz at most.
+pub(super) fn parse_images(text: &str) -> Result<usize, String> {
+    const MOST: usize = 108_000;
+    let images = text
+        .parse()
+        .ok()
+        .filter(|images| (1..=MOST).contains(images));
+    images.ok_or_else(|| format!("{text:?} is not a number of images, 1 to {MOST}"))
+}
+
 /// First and last step from 1 on, as they are counted on screen.
 pub(super) fn parse_steps(text: &str) -> Result<RangeInclusive<usize>, String> {
     let parse = || {

@@ -7,12 +7,13 @@ mod scores;
 mod settings;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use self::candidates::Fit;
 use self::scores::{Identity, Line, ScoreFile};
 use super::{open, sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
@@ -20,7 +21,7 @@ use crate::data::Dataset;
 use crate::episode::{EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::score::{Contest, EpisodeScores, score};
-use crate::eval::summary::summarise;
+use crate::eval::summary::{Scope, summarise};
 use crate::eval::{markdown, tables};
 use crate::export::table::{write_csv, write_parquet};
 use crate::model::checkpoint::write_atomic;
@@ -39,12 +40,12 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         args.model.clone()
     };
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
-    let contest = contest(args, &folders)?;
-    let (split, wanted) = wanted(args, &dataset, &folders[0]);
+    let (split, wanted) = wanted(args, &dataset, &folders)?;
+    let contest = contest(args, &folders, (&dataset, split), &stop)?;
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
     }
-    let identity = Identity::of(&contest, &folders, &dataset, split)?;
+    let identity = Identity::of(&contest, &dataset, split);
     let mut file = match &args.out {
         Some(out) => ScoreFile::open(out, &identity, args.shard)?,
         None => ScoreFile::default(),
@@ -90,20 +91,31 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
+    let scope = Scope {
+        data: dataset.name().to_owned(),
+        data_hash: dataset.data_hash().to_owned(),
+        split: split.name().to_owned(),
+        left_out: file.left_out(),
+    };
     let (indices, all) = file.scores();
     let scored = Scored {
         contest: &contest,
         all: &all,
         indices: &indices,
-        split,
+        scope: &scope,
         dataset: &dataset,
         folders: &folders,
     };
     conclude(args, &scored)
 }
 
-/// The models under every setting.
-fn contest(args: &EvalArgs, folders: &[PathBuf]) -> anyhow::Result<Contest> {
+/// The models under every setting, to be scored on a split of a dataset.
+fn contest(
+    args: &EvalArgs,
+    folders: &[PathBuf],
+    scored: (&Dataset, Split),
+    stop: &AtomicBool,
+) -> anyhow::Result<Contest> {
     let preset = match args.preset {
         EvalPreset::Synthetic => Protocol::SYNTHETIC,
         EvalPreset::Mit => Protocol::MIT,
@@ -114,12 +126,18 @@ fn contest(args: &EvalArgs, folders: &[PathBuf]) -> anyhow::Result<Contest> {
     };
     let mut candidates = candidates::open(folders)?;
     if let Some(data) = &args.fit {
-        candidates::fit(&mut candidates, data, folders, &args.mapping.topics)?;
+        let fit = Fit {
+            data,
+            topics: &args.mapping.topics,
+            protocol,
+            stop,
+        };
+        candidates::fit(&mut candidates, folders, &fit, scored)?;
     }
     for candidate in &candidates {
         let stack = candidate.inspector.model().config.frame_stack;
-        if protocol.context <= stack || protocol.horizon == 0 {
-            bail!("--context must be more than {stack} and --horizon more than 0");
+        if protocol.context <= stack {
+            bail!("--context must be more than {stack}");
         }
     }
     let subjects = settings::subjects(&candidates, &args.state, protocol)?;
@@ -132,16 +150,38 @@ fn contest(args: &EvalArgs, folders: &[PathBuf]) -> anyhow::Result<Contest> {
     })
 }
 
-/// The split that is scored, and its episodes.
-fn wanted(args: &EvalArgs, dataset: &Dataset, folder: &Path) -> (Split, Vec<usize>) {
-    let splits = dataset.splits(open::split_seed(folder));
+/// The split that is scored, and its episodes. Where the dataset names no `val`, every training has cut its own by its
+/// seed: episodes that one model has not seen another was trained on, so such models are refused together.
+fn wanted(
+    args: &EvalArgs,
+    dataset: &Dataset,
+    folders: &[PathBuf],
+) -> anyhow::Result<(Split, Vec<usize>)> {
+    let splits = |folder: &Path| dataset.splits(open::split_seed(folder));
+    let first = splits(&folders[0]);
     let split = args.split.unwrap_or_else(|| {
-        let has = |split: &Split| splits.contains(split);
-        let first = [Split::Test, Split::Val].into_iter().find(has);
-        first.unwrap_or(Split::Test)
+        let has = |split: &Split| first.contains(split);
+        let known = [Split::Test, Split::Val].into_iter().find(has);
+        known.unwrap_or(Split::Test)
     });
-    let of_split = splits.iter().enumerate().filter(|(_, own)| **own == split);
-    (split, of_split.map(|(index, _)| index).collect())
+    let of_split = |splits: &[Split]| -> Vec<usize> {
+        let own = splits.iter().enumerate().filter(|(_, own)| **own == split);
+        own.map(|(index, _)| index).collect()
+    };
+    let wanted = of_split(&first);
+    for folder in &folders[1..] {
+        if of_split(&splits(folder)) != wanted {
+            bail!(
+                "{} names no split `val`, and {} and {} have cut theirs by different seeds: of split `{}` one would be \
+                 scored on what it was trained on; evaluate them apart, or on a dataset that names its splits",
+                dataset.name(),
+                folders[0].display(),
+                folder.display(),
+                split.name()
+            );
+        }
+    }
+    Ok((split, wanted))
 }
 
 /// Scores an episode, or says why it is left out.
@@ -156,6 +196,9 @@ fn one(contest: &Contest, dataset: &Dataset, index: usize, path: &Path) -> anyho
         Ok(episode) => episode,
         Err(error) => return Ok(left_out(error.to_string())),
     };
+    if let Some(why) = candidates::odd(&episode) {
+        return Ok(left_out(why));
+    }
     let id = &episode.meta.id;
     for candidate in &contest.candidates {
         let config = &candidate.inspector.model().config;
@@ -190,25 +233,31 @@ struct Scored<'a> {
     all: &'a [EpisodeScores],
     /// Their places in the dataset.
     indices: &'a [usize],
-    split: Split,
+    scope: &'a Scope,
     dataset: &'a Dataset,
     folders: &'a [PathBuf],
 }
 
 /// Says and writes what the scores come to.
 fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
-    let Scored { contest, all, .. } = *scored;
-    let Some(summary) = summarise(contest, all)? else {
+    let Scored {
+        contest,
+        all,
+        indices,
+        scope,
+        ..
+    } = *scored;
+    let Some(summary) = summarise(contest, all, scope)? else {
         bail!(
             "{}: no episode of split `{}` with {} images or more; choose another --split, --context or --horizon",
-            scored.dataset.name(),
-            scored.split.name(),
+            scope.data,
+            scope.split,
             contest.protocol.images()
         );
     };
-    let text = markdown::markdown(&summary, scored.split.name());
+    let text = markdown::markdown(&summary);
     if let Some(out) = &args.out {
-        for table in tables::tables(contest, all, &summary) {
+        for table in tables::tables(contest, all, indices, &summary) {
             write_csv(&table, &out.join(format!("{}.csv", table.name)))?;
             write_parquet(&table, &out.join(format!("{}.parquet", table.name)))?;
         }

@@ -13,11 +13,21 @@ pub struct Side {
     pub recipe: String,
     /// Empty as trained.
     pub setting: String,
-    /// Scores of each seed, in the order of the seeds: for each an episode's means over the horizon.
+    /// Scores of each seed, the least seed first: for each an episode's means over the horizon.
     pub seeds: Vec<Vec<Means>>,
 }
 
 impl Side {
+    /// Nothing switched or damaged.
+    fn as_trained(&self) -> bool {
+        self.setting.is_empty()
+    }
+
+    /// No model, but what anybody could write.
+    fn is_trivial(&self) -> bool {
+        TRIVIAL.contains(&self.model.as_str())
+    }
+
     /// How it is called.
     pub fn label(&self) -> String {
         let group = group(&self.model, &self.recipe);
@@ -61,7 +71,12 @@ pub enum Finding {
     Reversed,
     /// The interval has zero in it.
     Open,
+    /// Of so few episodes an interval says little.
+    TooFew,
 }
+
+/// Fewer episodes than this tell nothing: with three, one difference in four has the same sign in all by chance.
+const FEW: usize = 10;
 
 impl Finding {
     /// In a word or two.
@@ -70,6 +85,7 @@ impl Finding {
             Self::Holds => "holds",
             Self::Reversed => "the other way round",
             Self::Open => "cannot be told",
+            Self::TooFew => "too few episodes",
         }
     }
 }
@@ -117,6 +133,9 @@ impl Comparison {
             Finding::Open => format!(
                 "`{better}` and `{worse}` cannot be told apart, {mean:+.2} dB [{low:+.2}, {high:+.2}] on {of}: does not hold{seeds}"
             ),
+            Finding::TooFew => format!(
+                "`{better}` less `{worse}` is {mean:+.2} dB on {of}: too few to tell, {FEW} or more are wanted{seeds}"
+            ),
         }
     }
 }
@@ -147,6 +166,7 @@ pub fn compare(first: &Side, second: &Side) -> Option<Comparison> {
     let psnr = difference(|m| m.psnr_db);
     let psnr_db = mean_95(&psnr, 0)?;
     let finding = match psnr_db {
+        _ if episodes < FEW => Finding::TooFew,
         Interval { low, .. } if low > 0.0 => Finding::Holds,
         Interval { high, .. } if high < 0.0 => Finding::Reversed,
         _ => Finding::Open,
@@ -193,31 +213,39 @@ const CLAIMS: [[&str; 2]; 8] = [
 /// The names of the predictors that anybody could write.
 pub const TRIVIAL: [&str; 2] = ["last frame held", "mean frame"];
 
-/// Every side of a contest: rows of one group and setting together, then the trivial predictors.
+/// Every side of a contest: rows of one group and setting together, then the trivial predictors. The same seed given
+/// twice counts once.
 pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
-    let mut sides: Vec<Side> = Vec::new();
+    let candidate = |place: usize| contest.candidate(&contest.subjects[place]);
+    let mut groups: Vec<Vec<usize>> = Vec::new();
     for (place, subject) in contest.subjects.iter().enumerate() {
-        let candidate = contest.candidate(subject);
-        let means = all
-            .iter()
-            .filter_map(|episode| episode.subjects.get(place))
-            .map(|scores| Means::of(&scores.frames))
-            .collect();
-        let own = |side: &&mut Side| {
-            side.model == candidate.model()
-                && side.recipe == candidate.recipe
-                && side.setting == subject.setting.name
+        let alike = |group: &&mut Vec<usize>| {
+            let (first, own) = (candidate(group[0]), candidate(place));
+            (first.model(), &first.recipe) == (own.model(), &own.recipe)
+                && contest.subjects[group[0]].setting == subject.setting
         };
-        match sides.iter_mut().find(own) {
-            Some(side) => side.seeds.push(means),
-            None => sides.push(Side {
-                model: candidate.model().to_owned(),
-                recipe: candidate.recipe.clone(),
-                setting: subject.setting.name.clone(),
-                seeds: vec![means],
-            }),
+        match groups.iter_mut().find(alike) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
         }
     }
+    let means = |place: &usize| {
+        let scores = all.iter().filter_map(|e| e.subjects.get(*place));
+        scores.map(|scores| Means::of(&scores.frames)).collect()
+    };
+    let side = |mut group: Vec<usize>| {
+        let seed = |place: &usize| candidate(*place).seed;
+        group.sort_by_key(seed);
+        group.dedup_by(|a, b| seed(a).is_some() && seed(a) == seed(b));
+        let first = group[0];
+        Side {
+            model: candidate(first).model().to_owned(),
+            recipe: candidate(first).recipe.clone(),
+            setting: contest.subjects[first].setting.name.clone(),
+            seeds: group.iter().map(means).collect(),
+        }
+    };
+    let mut sides: Vec<Side> = groups.into_iter().map(side).collect();
     let [held, mean] = TRIVIAL;
     let trivial = |name: &str, scores: fn(&EpisodeScores) -> &FrameScores| Side {
         model: name.to_owned(),
@@ -230,15 +258,18 @@ pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
     sides
 }
 
-/// The paper's claims among the sides of each recipe, the first recipe against the others model by model, each product
-/// against itself without the prior, and each row against the trivial predictors; a set without any of the paper's
-/// names has each row against the first.
+/// The sides that are models.
+fn rows(sides: &[Side]) -> Vec<&Side> {
+    sides.iter().filter(|side| !side.is_trivial()).collect()
+}
+
+/// The paper's claims among the sides of each recipe, and the first recipe against the others model by model; or, in a
+/// set without any of these, each model against the first. Then each model against itself under every setting, and
+/// each row against the trivial predictors.
 pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
-    let is_trivial = |side: &&Side| TRIVIAL.contains(&side.model.as_str());
-    let rows: Vec<&Side> = sides.iter().filter(|side| !is_trivial(side)).collect();
-    let find = |model: &str, recipe: &str, setting: &str| {
-        let is =
-            |side: &&&Side| side.model == model && side.recipe == recipe && side.setting == setting;
+    let rows = rows(sides);
+    let find = |model: &str, recipe: &str| {
+        let is = |side: &&&Side| side.model == model && side.recipe == recipe && side.as_trained();
         rows.iter().find(is).copied()
     };
     let mut recipes: Vec<&str> = Vec::new();
@@ -248,34 +279,44 @@ pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
         }
     }
     let claimed = |recipe| {
-        let pair = move |[a, b]: &[&str; 2]| find(a, recipe, "").zip(find(b, recipe, ""));
+        let pair = move |[a, b]: &[&str; 2]| find(a, recipe).zip(find(b, recipe));
         CLAIMS.iter().filter_map(pair)
     };
     let mut pairs: Vec<(&Side, &Side)> = recipes.iter().copied().flat_map(claimed).collect();
-    for &side in rows.iter().filter(|side| side.setting.is_empty()) {
-        let first = recipes
-            .first()
-            .and_then(|first| find(&side.model, first, ""));
-        pairs.extend(
-            first
-                .filter(|first| first.recipe != side.recipe)
-                .map(|first| (first, side)),
-        );
+    let (trained, set): (Vec<&Side>, Vec<&Side>) = rows.iter().partition(|side| side.as_trained());
+    for side in &trained {
+        let first = recipes.first().and_then(|first| find(&side.model, first));
+        let other = first.filter(|first| first.recipe != side.recipe);
+        pairs.extend(other.map(|first| (first, *side)));
     }
-    pairs.extend(rows.iter().filter_map(|&side| {
-        let without = find(&side.model, &side.recipe, "prior off")?;
-        side.setting.is_empty().then_some((side, without))
-    }));
     if pairs.is_empty() {
-        pairs.extend(rows.iter().skip(1).map(|&row| (row, rows[0])));
+        pairs.extend(trained.iter().skip(1).map(|&row| (row, trained[0])));
     }
-    for trivial in sides.iter().filter(is_trivial) {
+    for &side in &set {
+        let trained = find(&side.model, &side.recipe);
+        pairs.extend(trained.map(|trained| (trained, side)));
+    }
+    for trivial in sides.iter().filter(|side| side.is_trivial()) {
         pairs.extend(rows.iter().map(|&row| (row, trivial)));
     }
-    pairs
-        .into_iter()
-        .filter_map(|(a, b)| compare(a, b))
-        .collect()
+    let compare = |(first, second)| compare(first, second);
+    pairs.into_iter().filter_map(compare).collect()
+}
+
+/// Claims of the paper whose models are there, but of no common recipe: where a budget in minutes gives one model more
+/// updates than another, they are not compared unasked.
+pub fn unasked(sides: &[Side]) -> Vec<[&'static str; 2]> {
+    let recipes = |model: &str| -> Vec<&str> {
+        let own = rows(sides)
+            .into_iter()
+            .filter(|s| s.model == model && s.as_trained());
+        own.map(|side| side.recipe.as_str()).collect()
+    };
+    let apart = |[a, b]: &[&'static str; 2]| {
+        let (a, b) = (recipes(a), recipes(b));
+        !a.is_empty() && !b.is_empty() && !a.iter().any(|recipe| b.contains(recipe))
+    };
+    CLAIMS.into_iter().filter(apart).collect()
 }
 
 #[cfg(test)]
@@ -319,10 +360,24 @@ mod tests {
         assert_eq!((found.finding, found.seeds), (Finding::Holds, None));
         assert!((found.psnr_db.mean - 0.5).abs() < 0.05 && (found.won - 1.0).abs() < 1e-12);
         assert!(found.sentence().ends_with("holds"), "{}", found.sentence());
-        assert_eq!(compare(&b, &a).unwrap().finding, Finding::Reversed);
+        let reversed = compare(&b, &a).unwrap();
+        assert_eq!(reversed.finding, Finding::Reversed);
+        let said = reversed.sentence();
+        assert!(
+            said.starts_with("`b` predicts worse than `a`, by 0.5") && !said.contains('-'),
+            "{said}"
+        );
         let open = compare(&c, &b).unwrap();
         assert_eq!(open.finding, Finding::Open);
         assert!(open.sentence().contains("cannot be told apart"));
+        // Nine episodes of one sign are not enough to say so.
+        let mut few = [a, b];
+        for side in &mut few {
+            side.seeds[0].truncate(9);
+        }
+        let few = compare(&few[0], &few[1]).unwrap();
+        assert!(few.psnr_db.low > 0.0 && few.finding == Finding::TooFew);
+        assert!(few.sentence().contains("on 9 episodes: too few"));
     }
 
     #[test]
@@ -354,7 +409,15 @@ mod tests {
         assert_eq!(of_one[0], ["vhp", "v"]);
         assert_eq!(of_one[1], ["vhp", "vhp (prior off)"]);
         assert_eq!(of_one.len(), 2 + 2 * 3);
-        assert_eq!(asked(&["mine", "yours", held])[0], ["yours", "mine"]);
+        // Among other names each is asked over the first, whatever else stands in the table.
+        assert_eq!(
+            asked(&["mine", "yours", "mine//prior off", "yours//prior off", held])[..3],
+            [
+                ["yours", "mine"],
+                ["mine", "mine (prior off)"],
+                ["yours", "yours (prior off)"]
+            ]
+        );
         // Claims are of one recipe; recipes are compared model by model.
         assert_eq!(
             asked(&["v/fast", "vhp/released", "vhp/fast", "v/released"]),
@@ -365,5 +428,17 @@ mod tests {
                 ["v fast", "v released"],
             ]
         );
+    }
+
+    #[test]
+    fn claims_that_cannot_be_asked_are_known() {
+        let flat: Psnr = |_| 20.0;
+        let sides = |names: &[&str]| -> Vec<Side> {
+            names.iter().map(|name| side(name, &[flat])).collect()
+        };
+        let of_two = sides(&["v/fast, 12 updates", "vhp/fast, 9 updates"]);
+        assert_eq!(unasked(&of_two), [["vhp", "v"]]);
+        assert_eq!(unasked(&sides(&["v/a", "vhp/b", "vhp/a"])), [[""; 2]; 0]);
+        assert_eq!(unasked(&sides(&["vhp", "vhp-c//prior off"])), [[""; 2]; 0]);
     }
 }

@@ -109,3 +109,78 @@ fn averaged(subject: &Subject, expert: Expert, offset: i64, values: &[f64]) -> O
         share,
     })
 }
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test may stop here")]
+mod tests {
+    use candle_core::Device;
+
+    use super::*;
+    use crate::eval::protocol::Protocol;
+    use crate::eval::score::{Candidate, SubjectScores};
+    use crate::eval::setting::Setting;
+    use crate::model::Model;
+    use crate::model::inspect::Inspector;
+
+    /// An episode of ten steps that is touched at `onset`, where vision has the share `touched`, and 0.2 elsewhere.
+    fn touched_at(onset: usize, touched: f32) -> EpisodeScores {
+        let mut force_newtons = vec![0.0; onset];
+        force_newtons.resize(10, 5.0);
+        // With one frame stacked, belief 0 is of step 1.
+        let share = |step: usize| if step == onset { touched } else { 0.2 };
+        let shares = (1..10).map(|step| vec![share(step), 1.0 - share(step)]);
+        EpisodeScores {
+            force_newtons,
+            subjects: vec![SubjectScores {
+                shares: Some(shares.collect()),
+                ..SubjectScores::default()
+            }],
+            ..EpisodeScores::default()
+        }
+    }
+
+    #[test]
+    fn shares_line_up_with_the_moment_of_contact() {
+        let mut config = Config::named("v").unwrap();
+        config.hidden = 8;
+        let model = Model::new(config, 0, &Device::Cpu).unwrap();
+        let contest = Contest {
+            candidates: vec![Candidate {
+                label: "v".to_owned(),
+                recipe: String::new(),
+                seed: None,
+                hash: String::new(),
+                inspector: Inspector::new(model).unwrap(),
+                probe: None,
+                contact_newtons: Some(1.0),
+                regressors: None,
+            }],
+            subjects: vec![Subject {
+                label: "v".to_owned(),
+                candidate: 0,
+                setting: Setting::default(),
+            }],
+            protocol: Protocol::SYNTHETIC,
+            mean_frame: Vec::new(),
+        };
+        let all: Vec<EpisodeScores> = (0..24)
+            .map(|i| touched_at(3 + i % 3, if i % 2 == 0 { 0.5 } else { 0.7 }))
+            .collect();
+        let (threshold, rows) = aligned(&contest, &all);
+        assert!((threshold - 1.0).abs() < 1e-6);
+        let vision = |offset: i64| {
+            let own = |r: &&Aligned| r.expert == Expert::Vision && r.offset == offset;
+            rows.iter().find(own)
+        };
+        let (before, at, after) = (vision(-1).unwrap(), vision(0).unwrap(), vision(1).unwrap());
+        assert!((at.share.mean - 0.6).abs() < 1e-6 && at.contacts == 24);
+        assert!(at.share.low > 0.5 && at.share.low < 0.6 && at.share.high > 0.6);
+        for other in [before, after] {
+            assert!((other.share.mean - 0.2).abs() < 1e-6, "{other:?}");
+        }
+        // Three steps before contact eight episodes have no belief yet, six after it all but eight have ended.
+        assert_eq!(vision(-3).map(|r| r.contacts), Some(16));
+        assert_eq!(vision(6), None);
+        assert!(aligned(&contest, &all[..9]).1.is_empty());
+    }
+}

@@ -6,15 +6,22 @@ use super::protocol::Protocol;
 use super::quoted;
 use super::regression::FittedOn;
 use super::spread::Spread;
-use super::summary::{Quality, Summary};
+use super::summary::{Quality, Scope, Summary};
 use crate::measure::bootstrap::Interval;
 
-/// Every table of a summary of episodes of a split.
-pub fn markdown(summary: &Summary, split: &str) -> String {
+/// Every table of a summary.
+pub fn markdown(summary: &Summary) -> String {
     let Protocol { context, horizon } = summary.protocol;
+    let Scope {
+        split, left_out, ..
+    } = &summary.scope;
+    let left_out = match left_out {
+        0 => String::new(),
+        count => format!(" ({count} left out)"),
+    };
     let mut text = format!(
-        "{} episodes of split `{split}`, {context} images seen, {horizon} predicted. ± is one standard deviation over episodes, brackets are \
-         95 % bootstrap intervals over the same episodes.\n",
+        "{} episodes of split `{split}`{left_out}, {context} images seen, {horizon} predicted. ± is one standard deviation \
+         over episodes, brackets are 95 % bootstrap intervals over the same episodes.\n",
         summary.episodes
     );
     quality(&mut text, summary);
@@ -150,17 +157,24 @@ fn comparisons(text: &mut String, summary: &Summary) {
     for c in &summary.comparisons {
         let _ = writeln!(text, "- {}.", c.sentence());
     }
+    for [better, worse] in &summary.unasked {
+        let _ = writeln!(
+            text,
+            "- Whether `{better}` predicts better than `{worse}` is not asked: no two of them were trained by one recipe, \
+             on the same data and for as many updates."
+        );
+    }
 }
 
 fn regression(text: &mut String, summary: &Summary) {
     for (fitted_on, title) in [
         (
             FittedOn::Train,
-            "Pose from beliefs, fitted on the training split",
+            "Pose from beliefs, fitted on the training split (± over beliefs)",
         ),
         (
             FittedOn::Scored,
-            "Pose from beliefs, the released notebook's way: fitted on the very episodes that are scored",
+            "Pose from beliefs, the released notebook's way: fitted on the very episodes that are scored (± over beliefs)",
         ),
     ] {
         let rows: Vec<_> = summary

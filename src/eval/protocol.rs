@@ -23,11 +23,12 @@ impl Protocol {
         horizon: 37,
     };
 
-    /// The paper's 4 and 11, cut to an episode of `steps` images.
-    pub fn for_episode(steps: usize) -> Self {
+    /// The same, cut to an episode of `steps` images.
+    #[must_use]
+    pub fn within(self, steps: usize) -> Self {
         Self {
-            context: 4,
-            horizon: 11.min(steps.saturating_sub(4)),
+            horizon: self.horizon.min(steps.saturating_sub(self.context)),
+            ..self
         }
     }
 

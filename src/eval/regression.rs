@@ -3,6 +3,8 @@
 //! Two numbers, never mixed: regressors that were fitted on the training split, and regressors fitted on the very
 //! episodes that are scored, as the released notebook does it.
 
+use std::sync::Arc;
+
 use candle_core::Result;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -11,7 +13,7 @@ use super::prediction::{encode, roll};
 use super::protocol::Protocol;
 use super::score::{Contest, EpisodeScores, Subject};
 use super::spread::Spread;
-use crate::episode::Episode;
+use crate::episode::{Episode, PlanarPose};
 use crate::measure::spread::sample_covariance;
 use crate::model::Model;
 use crate::model::inspect::Inspector;
@@ -96,7 +98,7 @@ pub struct PoseErrors {
     pub count: usize,
     /// Root of the mean squared distance.
     pub rmse_cm: f64,
-    /// Absolute errors along x and y.
+    /// Absolute errors along x and y; their deviation is over beliefs.
     pub absolute_cm: [Spread; 2],
     /// Covariance of the absolute errors as xx, xy, yy, in cm².
     pub covariance_cm2: [f32; 3],
@@ -157,45 +159,45 @@ impl Latents {
     }
 }
 
-/// The latents of training episodes as a regressor sees them, each rolled out as [`Protocol::for_episode`] says; those
-/// without a recorded pose are left out.
+/// Filtered and predicted beliefs of an episode, and x, y and yaw at each of its images.
+type Read = (GaussianTrace, GaussianTrace, Vec<[f32; 3]>);
+
+/// The latents of training episodes as a regressor sees them, rolled out as `protocol` says as far as an episode goes;
+/// episodes that are none and those without a recorded pose are left out.
 pub fn latents<E>(
     inspector: &Inspector<&Model>,
-    episodes: impl IndexedParallelIterator<Item = std::result::Result<std::sync::Arc<Episode>, E>>,
+    episodes: impl IndexedParallelIterator<Item = std::result::Result<Option<Arc<Episode>>, E>>,
+    protocol: Protocol,
 ) -> std::result::Result<Latents, E>
 where
     E: From<candle_core::Error> + Send,
 {
     let config = &inspector.model().config;
-    let one = |episode: &Episode| -> Result<Option<[GaussianTrace; 2]>> {
-        let protocol = Protocol::for_episode(episode.steps());
-        if episode.object.is_none() || protocol.horizon == 0 {
+    let one = |episode: &Episode, poses: &[PlanarPose]| -> Result<Option<Read>> {
+        let protocol = protocol.within(episode.steps());
+        if protocol.horizon == 0 {
             return Ok(None);
         }
         let experts = encode(inspector, episode)?;
         let alphas = Alphas::trained(experts.controls.len() + 1, config.switches());
         let beliefs = inspector.filter(&experts, &alphas)?;
         let rolled = roll(inspector, &experts, &beliefs, protocol)?;
-        Ok(Some([beliefs.posterior, rolled.gaussians]))
+        let poses = poses.iter().map(|p| [p.x, p.y, p.yaw]).collect();
+        Ok(Some((beliefs.posterior, rolled.gaussians, poses)))
     };
-    let each: Vec<_> = episodes
-        .map(|episode| {
-            let episode = episode?;
-            let poses = episode.object.iter().flatten().map(|p| [p.x, p.y, p.yaw]);
-            let context = Protocol::for_episode(episode.steps()).context;
-            Ok((one(&episode)?, poses.collect::<Vec<_>>(), context))
+    let each: Vec<Option<Read>> = episodes
+        .map(|episode| match episode? {
+            Some(episode) => match &episode.object {
+                Some(poses) => Ok(one(&episode, poses)?),
+                None => Ok(None),
+            },
+            None => Ok(None),
         })
         .collect::<std::result::Result<_, E>>()?;
     let mut all = Latents::new(config.latent);
-    for (latents, poses, context) in each {
-        if let Some([filtered, predicted]) = latents {
-            all.push(
-                &filtered.mean,
-                &predicted.mean,
-                &poses,
-                [config.frame_stack, context],
-            );
-        }
+    let firsts = [config.frame_stack, protocol.context];
+    for (filtered, predicted, poses) in each.into_iter().flatten() {
+        all.push(&filtered.mean, &predicted.mean, &poses, firsts);
     }
     Ok(all)
 }
@@ -354,6 +356,18 @@ mod tests {
         assert!((found.absolute_cm[0].mean - 3.0).abs() < 1e-2 && found.absolute_cm[0].sd < 1e-2);
         let yaw = found.yaw_deg.expect("yaw");
         assert!((yaw.mean - 10.0).abs() < 0.2, "{yaw:?}");
+        // A network that always says the same place is wrong by the distance from it.
+        let mut still = fitted.filtered;
+        still.network.second.weight.fill(0.0);
+        still.network.second.bias = vec![0.0, 0.0, 0.0, 1.0];
+        let source = Source {
+            regressor: Regressor::Network,
+            ..source
+        };
+        let found = read(source, &latents.filtered, &still).expect("rows");
+        let squares: f32 = poses.iter().map(|[x, y, _]| x * x + y * y).sum();
+        let expected = 100.0 * f64::from(squares / 60.0).sqrt();
+        assert!((found.rmse_cm - expected).abs() < 1e-2, "{found:?}");
         Ok(())
     }
 }

@@ -23,6 +23,8 @@ pub struct Candidate {
     pub recipe: String,
     /// The seed of its training; none where its report does not say.
     pub seed: Option<u64>,
+    /// Names what its files hold.
+    pub hash: String,
     /// The model.
     pub inspector: Inspector,
     /// Its position probe.
@@ -102,8 +104,8 @@ impl FrameScores {
             scores
                 .ssim
                 .push(ssim(predicted, truth, *width).unwrap_or(f64::NAN));
-            let psnr = psnr_db_from_mse(error / truth.len() as f64);
-            scores.psnr_db.push(f64::from(psnr));
+            let mse = error / truth.len() as f64;
+            scores.psnr_db.push(psnr_db_from_mse(mse));
         }
         scores
     }
@@ -220,4 +222,58 @@ fn row(
         predicted: rolled.gaussians.mean,
         credit,
     })
+}
+
+#[cfg(test)]
+#[expect(clippy::unwrap_used, reason = "a test may stop here")]
+mod tests {
+    use super::*;
+
+    /// Frames of one grey each, 10 t at image t.
+    fn ramp(images: u8) -> Episode {
+        let frame = |t: u8| Frame {
+            width: 8,
+            height: 8,
+            pixels: vec![10 * t; 64],
+        };
+        Episode {
+            meta: crate::episode::EpisodeMeta::default(),
+            layout: crate::episode::Layout {
+                frame_size: 8,
+                window: 4,
+            },
+            steps_nanos: (0..i64::from(images)).collect(),
+            frames: (0..images).map(frame).collect(),
+            haptic: None,
+            proprio: None,
+            controls: None,
+            object: None,
+            tip: None,
+            flags: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn trivial_predictors_say_the_last_seen_frame_and_the_mean_one() {
+        let contest = Contest {
+            candidates: Vec::new(),
+            subjects: Vec::new(),
+            protocol: Protocol {
+                context: 3,
+                horizon: 4,
+            },
+            mean_frame: vec![60.0 / 255.0; 64],
+        };
+        let scores = score(&contest, &ramp(8)).unwrap();
+        // Image 3 of 1.. is held, of grey 20; predicted are greys 30 to 60.
+        let error = |grey: f64| 64.0 * (grey / 255.0).powi(2);
+        for (h, off) in [10.0, 20.0, 30.0, 40.0].into_iter().enumerate() {
+            assert!((scores.held.squared_error[h] - error(off)).abs() < 1e-5);
+            let psnr = 20.0 * (255.0_f64 / off).log10();
+            assert!((scores.held.psnr_db[h] - psnr).abs() < 1e-4);
+            assert!((scores.mean_frame.squared_error[h] - error(40.0 - off)).abs() < 1e-5);
+        }
+        assert_eq!(scores.held.ssim.len(), 4);
+        assert!(score(&contest, &ramp(6)).is_err());
+    }
 }

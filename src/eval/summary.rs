@@ -3,7 +3,7 @@
 use candle_core::Result;
 use serde::Serialize;
 
-use super::comparison::{Comparison, TRIVIAL, comparisons, sides};
+use super::comparison::{Comparison, Means, Side, TRIVIAL, comparisons, sides, unasked};
 use super::contact::{self, Aligned};
 use super::protocol::Protocol;
 use super::regression::{self, PoseErrors};
@@ -54,9 +54,24 @@ pub struct Seeds {
     pub psnr_db: Spread,
 }
 
+/// What was scored.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Scope {
+    /// The dataset's name.
+    pub data: String,
+    /// Names what it holds.
+    pub data_hash: String,
+    /// The split.
+    pub split: String,
+    /// Episodes of it that could not be scored.
+    pub left_out: usize,
+}
+
 /// What the tables and figures are drawn from.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// On what.
+    pub scope: Scope,
     /// How it was scored.
     pub protocol: Protocol,
     /// On how many episodes.
@@ -67,6 +82,8 @@ pub struct Summary {
     pub seeds: Vec<Seeds>,
     /// Who is better.
     pub comparisons: Vec<Comparison>,
+    /// Claims of the paper that were not asked: `[better, worse]` are there, but of no common recipe.
+    pub unasked: Vec<[&'static str; 2]>,
     /// Pose regression.
     pub regression: Vec<PoseErrors>,
     /// Shapley values.
@@ -78,7 +95,11 @@ pub struct Summary {
 }
 
 /// Sums up the scores of a contest. Some rows may be missing parts; none where there is no episode.
-pub fn summarise(contest: &Contest, all: &[EpisodeScores]) -> Result<Option<Summary>> {
+pub fn summarise(
+    contest: &Contest,
+    all: &[EpisodeScores],
+    scope: &Scope,
+) -> Result<Option<Summary>> {
     if all.is_empty() {
         return Ok(None);
     }
@@ -102,30 +123,30 @@ pub fn summarise(contest: &Contest, all: &[EpisodeScores]) -> Result<Option<Summ
     let sides = sides(contest, all);
     let (contact_newtons, aligned) = contact::aligned(contest, all);
     Ok(Some(Summary {
+        scope: scope.clone(),
         protocol: contest.protocol,
         episodes: all.len(),
         quality,
-        seeds: sides
-            .iter()
-            .filter(|side| side.seeds.len() > 1)
-            .filter_map(|side| {
-                let mean = |seed: &Vec<super::comparison::Means>| {
-                    seed.iter().map(|m| m.psnr_db).sum::<f64>() / seed.len().max(1) as f64
-                };
-                let means: Vec<f64> = side.seeds.iter().map(mean).collect();
-                Some(Seeds {
-                    label: side.label(),
-                    seeds: means.len(),
-                    psnr_db: Spread::of(&means)?,
-                })
-            })
-            .collect(),
+        seeds: sides.iter().filter_map(over_seeds).collect(),
         comparisons: comparisons(&sides),
+        unasked: unasked(&sides),
         regression: regression::errors(contest, all)?,
         credit: credited(contest, all),
         contact_newtons,
         aligned,
     }))
+}
+
+/// How far the seeds of a side lie apart; none for a single one.
+fn over_seeds(side: &Side) -> Option<Seeds> {
+    let mean =
+        |seed: &Vec<Means>| seed.iter().map(|m| m.psnr_db).sum::<f64>() / seed.len().max(1) as f64;
+    let means: Vec<f64> = side.seeds.iter().map(mean).collect();
+    (means.len() > 1).then_some(Seeds {
+        label: side.label(),
+        seeds: means.len(),
+        psnr_db: Spread::of(&means)?,
+    })
 }
 
 fn rate(subject: &str, scores: &[&FrameScores]) -> Option<Quality> {

@@ -24,12 +24,14 @@ pub fn psnr_db(a: &Frame, b: &Frame) -> Option<f32> {
     if a.pixels.is_empty() {
         return None;
     }
-    squared_error(a, b).map(|sum| psnr_db_from_mse(sum / a.pixels.len() as f64))
+    squared_error(a, b).map(|sum| psnr_db_from_mse(sum / a.pixels.len() as f64) as f32)
 }
 
-/// PSNR in dB of a mean squared error of values in 0 to 1.
-pub fn psnr_db_from_mse(mse: f64) -> f32 {
-    (-10.0 * mse.max(MSE_FLOOR).log10()) as f32
+/// PSNR in dB of a mean squared error of values in 0 to 1; that of no number is none.
+pub fn psnr_db_from_mse(mse: f64) -> f64 {
+    // Not `max`, which would make the best score of it.
+    let floored = if mse < MSE_FLOOR { MSE_FLOOR } else { mse };
+    -10.0 * floored.log10()
 }
 
 /// `a - b` in grey levels, -255 to 255, row major; none where the sizes differ.
@@ -64,6 +66,7 @@ mod tests {
         assert!(psnr_db(&black, &grey([255; 4])).unwrap().abs() < 1e-4);
         // One of four pixels wrong by everything: MSE 1/4, 6.0206 dB.
         assert!((psnr_db(&black, &grey([255, 0, 0, 0])).unwrap() - 6.0206).abs() < 1e-4);
+        assert!(psnr_db_from_mse(f64::NAN).is_nan());
     }
 
     #[test]

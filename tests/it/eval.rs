@@ -1,18 +1,34 @@
 //! The paper's tables from one command: whole, in shards, taken up again, and under switches.
 #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
 
+mod fairness;
+mod sensors;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use candle_core::{DType, Device};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;
+use poescope::model::Model;
+use poescope::model::checkpoint;
 use poescope::model::config::Config;
 use serde_json::Value;
 
 use crate::common::{answer, poescope, simulated, three_experts, untrained};
 
 const EPISODES: usize = 20;
+const TABLES: [&str; 8] = [
+    "comparisons",
+    "contact",
+    "frames",
+    "horizons",
+    "models",
+    "regression",
+    "seeds",
+    "shapley",
+];
 
 /// Simulated test episodes, and `v`, `vhp` and `v-h-p` before training.
 struct Bench {
@@ -101,15 +117,7 @@ fn shards_and_interrupted_runs_come_to_the_same_bytes() {
     }
     let expected = results(&whole);
     let names: Vec<&str> = expected.iter().map(|(name, _)| name.as_str()).collect();
-    let tables = [
-        "comparisons",
-        "contact",
-        "frames",
-        "horizons",
-        "regression",
-        "shapley",
-    ];
-    for name in tables {
+    for name in TABLES {
         assert!(
             names.contains(&&*format!("{name}.csv"))
                 && names.contains(&&*format!("{name}.parquet"))
@@ -138,18 +146,61 @@ fn shards_and_interrupted_runs_come_to_the_same_bytes() {
         scores
     );
 
-    // Scores of another protocol do not mix with these.
-    let output = bench
-        .eval(&["--context", "3"])
-        .arg("--out")
-        .arg(&whole)
-        .output()
-        .unwrap();
-    let complaint = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        complaint.contains("scores of other models, data or settings"),
-        "{complaint}"
-    );
+    // Scores of another protocol, of other rows or of other weights do not mix with these.
+    let refused = |options: &[&str]| {
+        let mut eval = bench.eval(options);
+        let output = eval.arg("--out").arg(&whole).output().unwrap();
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        let known = "scores of other models, data or settings";
+        assert!(complaint.contains(known), "{complaint}");
+    };
+    refused(&["--context", "3"]);
+    refused(&["--state", "alpha=vision:0.5"]);
+    let config = three_experts();
+    let model = Model::new(config, 8, &Device::Cpu).unwrap();
+    checkpoint::save(&model, &bench.models[2], DType::F16, None).unwrap();
+    refused(&[]);
+}
+
+#[test]
+fn a_shard_leaves_the_files_of_others_alone() {
+    let bench = Bench::new();
+    let out = bench.out("out");
+    answer(bench.eval(&["--shard", "1/2"]).arg("--out").arg(&out));
+    // The other one is writing a line.
+    let other = out.join("scores-1-of-2.jsonl");
+    let mut text = fs::read_to_string(&other).unwrap();
+    text.truncate(text.len() - 40);
+    fs::write(&other, &text).unwrap();
+    answer(bench.eval(&["--shard", "2/2"]).arg("--out").arg(&out));
+    assert!(fs::read_to_string(&other).unwrap() == text);
+}
+
+/// Head and rows of a table, as they are written.
+fn csv(out: &Path, name: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(out.join(format!("{name}.csv"))).unwrap();
+    let row = |line: &str| line.split(',').map(str::to_owned).collect();
+    text.lines().map(row).collect()
+}
+
+/// The same of its Parquet file, numbers as CSV has them.
+fn parquet(out: &Path, name: &str) -> Vec<Vec<String>> {
+    let file = fs::File::open(out.join(format!("{name}.parquet"))).unwrap();
+    let file = SerializedFileReader::new(file).unwrap();
+    let schema = file.metadata().file_metadata().schema_descr();
+    let head = schema.columns().iter().map(|c| c.name().to_owned());
+    let mut rows = vec![head.collect()];
+    for row in file.get_row_iter(None).unwrap() {
+        let cell = |(_, field): (String, Field)| match field {
+            Field::Null => String::new(),
+            Field::Str(text) => text,
+            Field::Long(number) => number.to_string(),
+            Field::Double(number) => format!("{number:?}"),
+            other => panic!("{other:?}"),
+        };
+        rows.push(row.unwrap().into_columns().into_iter().map(cell).collect());
+    }
+    rows
 }
 
 #[test]
@@ -158,66 +209,34 @@ fn tables_say_the_same_in_every_format() {
     let out = bench.out("out");
     let report: Value =
         serde_json::from_str(&answer(bench.eval(&["--json"]).arg("--out").arg(&out))).unwrap();
-    let file =
-        SerializedFileReader::new(fs::File::open(out.join("frames.parquet")).unwrap()).unwrap();
-    let rows: Vec<Vec<(String, Field)>> = file
-        .get_row_iter(None)
-        .unwrap()
-        .map(|row| row.unwrap().into_columns())
-        .collect();
-    let csv = fs::read_to_string(out.join("frames.csv")).unwrap();
-    let mut lines = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let head = lines.next().unwrap();
-    assert_eq!(
-        head,
-        [
-            "episode",
-            "model",
-            "horizon",
-            "squared_error",
-            "ssim",
-            "psnr_db"
-        ]
-    );
-    // Three models, two of them products that stand without their prior as well, and the two trivial predictors.
-    assert_eq!(rows.len(), EPISODES * 5 * 7);
-    let mut sum = 0.0;
-    for (row, line) in rows.iter().zip(lines) {
-        for ((name, field), (column, text)) in row.iter().zip(head.iter().zip(line)) {
-            assert_eq!(name, column);
-            match field {
-                Field::Str(said) => assert_eq!(said, text),
-                Field::Long(said) => assert_eq!(said.to_string(), text),
-                Field::Double(said) => {
-                    let read: f64 = text.parse().unwrap();
-                    assert_eq!(said.to_bits(), read.to_bits());
-                }
-                other => panic!("{other:?}"),
-            }
-        }
-        if let (Field::Str(model), Field::Double(error)) = (&row[1].1, &row[3].1)
-            && model == "vhp"
-        {
-            sum += error;
-        }
+    for name in TABLES {
+        let [csv, parquet] = [csv(&out, name), parquet(&out, name)];
+        assert!(csv.len() == parquet.len(), "{name}: rows");
+        assert!(csv == parquet, "{name}");
     }
-    let row = report["quality"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .find(|row| row["subject"] == "vhp")
-        .unwrap();
+    let frames = csv(&out, "frames");
+    let head = "index,episode,model,horizon,squared_error,ssim,psnr_db";
+    assert_eq!(frames[0].join(","), head);
+    // Three models, two of them products that stand without their prior as well, and the two trivial predictors.
+    assert_eq!(frames.len() - 1, EPISODES * 5 * 7);
+    let of_vhp = frames.iter().filter(|row| row[2] == "vhp");
+    let sum: f64 = of_vhp.map(|row| row[4].parse::<f64>().unwrap()).sum();
     let rmse = (sum / (EPISODES * 5) as f64).sqrt();
+    let mut rows = report["quality"].as_array().unwrap().iter();
+    let row = rows.find(|row| row["subject"] == "vhp").unwrap();
     assert!((row["rmse"].as_f64().unwrap() - rmse).abs() < 1e-9);
+    let models = csv(&out, "models");
+    assert_eq!(models.len(), 1 + 7);
+    let row = models.iter().find(|row| row[0] == "vhp").unwrap();
+    assert_eq!(row[1..5], ["test.mcap", &row[2], "test", "20"]);
+    assert!((row[5].parse::<f64>().unwrap() - rmse).abs() < 1e-9);
     // Around contact the experts' shares of a belief add up to one.
-    let contact = fs::read_to_string(out.join("contact.csv")).unwrap();
-    let rows: Vec<Vec<&str>> = contact
-        .lines()
-        .map(|line| line.split(',').collect())
-        .collect();
-    let at_onset = rows.iter().filter(|row| row[0] == "v-h-p" && row[2] == "0");
+    let contact = csv(&out, "contact");
+    let at_onset = contact
+        .iter()
+        .filter(|row| row[0] == "v-h-p" && row[2] == "0");
     let shares: Vec<f64> = at_onset.map(|row| row[4].parse().unwrap()).collect();
-    assert_eq!(shares.len(), 4, "{contact}");
+    assert_eq!(shares.len(), 4, "{contact:?}");
     assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-5);
     // Shapley values add up to what all sensors save over none, episode by episode.
     let scores = fs::read_to_string(out.join("scores.jsonl")).unwrap();
@@ -248,6 +267,7 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
         let row = rows.find(|row| row["subject"] == subject);
         row.map(|row| row["psnr_db"]["mean"].as_f64().unwrap())
     };
+    assert_ne!(psnr("vhp"), psnr("vhp (prior off)"));
     // Only one model has a haptic expert; all of them see.
     assert!(psnr("v-h-p (alpha=haptic:0)").is_some() && psnr("vhp (alpha=haptic:0)").is_none());
     for model in ["v", "vhp", "v-h-p"] {

@@ -1,15 +1,18 @@
 //! The models that are compared, with what was fitted for them.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, bail};
+use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use super::names::{Recipe, name};
 use crate::command::open;
 use crate::data::{Dataset, Role};
-use crate::episode::{EpisodeSource, Split};
+use crate::episode::{Episode, EpisodeSource, Split};
+use crate::eval::protocol::Protocol;
 use crate::eval::regression;
 use crate::eval::score::Candidate;
 use crate::model::checkpoint::{self, MEAN_FRAME, PROBE};
@@ -21,23 +24,18 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
     let mut candidates: Vec<Candidate> = Vec::new();
     let mut recipes: Vec<Recipe> = Vec::new();
     for folder in folders {
-        let (model, probe) = checkpoint::load(folder)?;
-        let path = folder.join(PROBE);
-        let regressors = if path.exists() {
-            Regressors::read(&path, model.config.latent)?
-        } else {
-            None
-        };
+        let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
         let report = open::report(folder);
-        recipes.push(Recipe::of(&model.config, report["updates"].as_u64()));
+        recipes.push(Recipe::of(&model.config, &report));
         let candidate = Candidate {
             label: String::new(),
             recipe: String::new(),
             seed: report["seed"].as_u64(),
             contact_newtons: report["contact_newtons"].as_f64().map(|n| n as f32),
+            regressors: regressors(&folder.join(PROBE), model.config.latent)?,
             inspector: Inspector::new(model)?,
             probe,
-            regressors,
+            hash,
         };
         if let Some(first) = candidates.first() {
             let layout = |c: &Candidate| c.inspector.model().config.layout();
@@ -55,34 +53,103 @@ pub fn open(folders: &[PathBuf]) -> anyhow::Result<Vec<Candidate>> {
     Ok(candidates)
 }
 
-/// Fits the pose regressors on the training split of a dataset, for each as its own training cut it.
+/// The pose regressors that ship with a model.
+fn regressors(path: &Path, latent: usize) -> anyhow::Result<Option<Regressors>> {
+    if !path.exists() {
+        return Ok(None);
+    }
+    let regressors = Regressors::read(path, latent)?;
+    if let Some(found) = regressors.as_ref().map(Regressors::outputs)
+        && found != regression::OUTPUTS
+    {
+        bail!(
+            "{}: its regressors give {found} numbers where x, y and yaw's sine and cosine are wanted; \
+             train again, or copy the checkpoint anew",
+            path.display()
+        );
+    }
+    Ok(regressors)
+}
+
+/// What pose regressors are fitted anew on.
+pub struct Fit<'a> {
+    /// Its training split is taken, for each model as its own training cut it.
+    pub data: &'a Path,
+    /// Where it has its roles.
+    pub topics: &'a [(Role, String)],
+    /// How predicted beliefs come about.
+    pub protocol: Protocol,
+    /// Whether to stop.
+    pub stop: &'a AtomicBool,
+}
+
+/// Fits the pose regressors anew. `scored` are the data and split that they are for: never fitted on.
 pub fn fit(
     candidates: &mut [Candidate],
-    data: &Path,
     folders: &[PathBuf],
-    topics: &[(Role, String)],
+    fit: &Fit<'_>,
+    scored: (&Dataset, Split),
 ) -> anyhow::Result<()> {
-    let dataset = Dataset::open_with(data, topics)?;
+    let data = fit.data.display();
+    let dataset = Dataset::open_with(fit.data, fit.topics)?;
+    if scored.1 == Split::Train && dataset.data_hash() == scored.0.data_hash() {
+        bail!("--fit {data}: these are the episodes that are scored; score another --split");
+    }
     for (candidate, folder) in candidates.iter_mut().zip(folders) {
         let model = candidate.inspector.model();
-        let splits = dataset
-            .splits(open::split_seed(folder))
-            .into_iter()
-            .enumerate();
-        let train: Vec<usize> = splits
-            .filter_map(|(i, s)| (s == Split::Train).then_some(i))
-            .collect();
+        let splits = dataset.splits(open::split_seed(folder)).into_iter();
+        let own = |(i, split)| (split == Split::Train).then_some(i);
+        let train: Vec<usize> = splits.enumerate().filter_map(own).collect();
         if train.is_empty() {
-            bail!("{}: no episode of split `train` to fit on", data.display());
+            bail!("{data}: no episode of split `train` to fit on");
         }
+        let style = ProgressStyle::with_template("fitting {bar:30} {pos}/{len} episodes, {msg}")?;
+        let bar = ProgressBar::new(train.len() as u64).with_style(style);
+        bar.set_message(candidate.label.clone());
+        let left_out = Mutex::new(Vec::new());
         let layout = model.config.layout();
-        let episodes = train
-            .into_par_iter()
-            .map(|i| anyhow::Ok(Arc::new(dataset.load(i, layout)?)));
-        let latents = regression::latents(&Inspector::new(model)?, episodes)?;
+        let episodes = train.into_par_iter().map(|index| {
+            if fit.stop.load(Ordering::Relaxed) {
+                bail!("stopped");
+            }
+            bar.inc(1);
+            let episode = dataset
+                .load(index, layout)
+                .map_err(|error| error.to_string());
+            let sound = episode.and_then(|e| odd(&e).map_or(Ok(e), Err));
+            Ok(match sound {
+                Ok(episode) => Some(Arc::new(episode)),
+                Err(why) => {
+                    let mut left_out = left_out.lock().unwrap_or_else(PoisonError::into_inner);
+                    left_out.push(why);
+                    None
+                }
+            })
+        });
+        let latents = regression::latents(&Inspector::new(model)?, episodes, fit.protocol)?;
+        bar.finish_and_clear();
+        let mut left_out = left_out
+            .into_inner()
+            .unwrap_or_else(PoisonError::into_inner);
+        left_out.sort();
+        for why in left_out {
+            eprintln!("left out of the fit: {why}");
+        }
         candidate.regressors = latents.fit()?;
+        if candidate.regressors.is_none() {
+            bail!(
+                "--fit {data}: no object pose is recorded on its split `train`, or on too few images"
+            );
+        }
     }
     Ok(())
+}
+
+/// Why an episode says nothing about a model: what was odd when it was recorded, as training has it.
+pub fn odd(episode: &Episode) -> Option<String> {
+    let flag = episode.flags.first()?;
+    let id = &episode.meta.id;
+    Some(format!("episode `{id}`: {}: {}", flag.topic, flag.what))
 }
 
 /// The mean training frame of a checkpoint, in [0, 1].

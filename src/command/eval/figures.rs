@@ -45,6 +45,9 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
             strips.push(strip(scored, index, [first, second], &against)?);
         }
     }
+    if strips.is_empty() {
+        return Ok(());
+    }
     let side = contest.candidates[0].inspector.model().config.frame_size;
     figures::strips(&title, &strips, side).save(out, "strips")?;
     Ok(())
@@ -116,7 +119,7 @@ fn strip(
     }
     Ok(Strip {
         title: format!(
-            "{}, among the worst {against}: mean squared error {}",
+            "{}, among the worst {against}: squared error a frame {}",
             scores.episode,
             errors.join(", ")
         ),

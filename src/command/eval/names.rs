@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
 use crate::eval::score::Candidate;
 use crate::model::config::{Config, Preset};
 
@@ -12,10 +14,13 @@ pub(super) struct Recipe {
     config: Config,
     /// Of its training, where its report says so.
     updates: Option<u64>,
+    /// Names what it was trained on, where its report says so.
+    data_hash: Option<String>,
 }
 
 impl Recipe {
-    pub(super) fn of(config: &Config, updates: Option<u64>) -> Self {
+    /// Of a model's config and the report of its training.
+    pub(super) fn of(config: &Config, report: &Value) -> Self {
         let mut config = config.clone();
         for channels in [&mut config.haptic, &mut config.proprio] {
             channels.mean.clear();
@@ -35,7 +40,11 @@ impl Recipe {
             config.prior_expert = false;
             config.training.masks = false;
         }
-        Self { config, updates }
+        Self {
+            config,
+            updates: report["updates"].as_u64(),
+            data_hash: report["data_hash"].as_str().map(str::to_owned),
+        }
     }
 
     /// Whether the same was done. A budget in minutes comes to a few updates more or less.
@@ -44,7 +53,7 @@ impl Recipe {
             (Some(a), Some(b)) => a.abs_diff(b) <= a.max(b) / 20,
             (a, b) => a == b,
         };
-        near && self.config == other.config
+        near && self.config == other.config && self.data_hash == other.data_hash
     }
 
     /// The preset of its training; the unit of force is the dataset's matter, and epochs are what updates count.
@@ -130,24 +139,28 @@ mod tests {
     use crate::model::Model;
     use crate::model::inspect::Inspector;
     use candle_core::Device;
+    use serde_json::json;
 
-    /// Labels of `(model, preset, updates, folder)`, the first of them changed.
+    /// Labels of `(model, preset, updates, folder)`, the first of them changed. What a folder lies in is what it was trained on.
     fn called(runs: &[(&str, Preset, u64, &str)], change: fn(&mut Config)) -> Vec<String> {
         let mut recipes = Vec::new();
         let mut candidates = Vec::new();
-        for (i, &(name, preset, updates, _)) in runs.iter().enumerate() {
+        for (i, &(name, preset, updates, folder)) in runs.iter().enumerate() {
             let mut config = Config::preset(name, preset).unwrap();
             config.hidden = 8;
             config.training.error_weights = vec![1.0; i % 2];
             if i == 0 {
                 change(&mut config);
             }
-            recipes.push(Recipe::of(&config, Some(updates)));
+            let data = folder.split_once('/').map(|(data, _)| data);
+            let report = json!({ "updates": updates, "data_hash": data });
+            recipes.push(Recipe::of(&config, &report));
             config.training.error_weights.clear();
             candidates.push(Candidate {
                 label: String::new(),
                 recipe: String::new(),
                 seed: Some(i as u64),
+                hash: String::new(),
                 contact_newtons: None,
                 inspector: Inspector::new(Model::new(config, 0, &Device::Cpu).unwrap()).unwrap(),
                 probe: None,
@@ -189,6 +202,9 @@ mod tests {
         // A budget in minutes does not come to the same number.
         let runs = [("v", Fast, 995, "a"), ("v", Fast, 1003, "b")];
         assert_eq!(called(&runs, same), ["v seed 0", "v seed 1"]);
+        // Nor are runs on other data further seeds.
+        let runs = [("v", Fast, 9, "sim/v"), ("v", Fast, 9, "real/v")];
+        assert_eq!(called(&runs, same), ["v sim/v", "v real/v"]);
         // One that was changed by hand is called by its folder.
         let runs = [("v", Fast, 9, "runs/a"), ("v", Fast, 9, "runs/b")];
         assert_eq!(

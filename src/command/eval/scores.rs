@@ -13,7 +13,6 @@ use crate::episode::{EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::score::{Contest, EpisodeScores};
 use crate::eval::setting::Setting;
-use crate::model::checkpoint;
 
 /// What scores must share to stand in one table: the first line of a score file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,32 +21,32 @@ pub struct Identity {
     data_hash: String,
     split: String,
     protocol: Protocol,
-    /// Hashes of the checkpoints' files.
+    /// Names what the checkpoints' files hold.
     models: Vec<String>,
+    /// Names the mean training frame.
+    mean_frame: String,
     /// Label, model and setting of each row.
     rows: Vec<(String, usize, Setting)>,
 }
 
 impl Identity {
     /// Of a contest.
-    pub fn of(
-        contest: &Contest,
-        folders: &[PathBuf],
-        dataset: &Dataset,
-        split: Split,
-    ) -> anyhow::Result<Self> {
+    pub fn of(contest: &Contest, dataset: &Dataset, split: Split) -> Self {
         let rows = contest.subjects.iter();
-        let hashes = folders.iter().map(|folder| checkpoint::hash(folder));
-        Ok(Self {
+        let models = contest.candidates.iter();
+        let mean_frame = contest.mean_frame.iter().map(|p| p.to_bits().to_le_bytes());
+        let mean_frame: Vec<u8> = mean_frame.flatten().collect();
+        Self {
             poescope: env!("CARGO_PKG_VERSION").to_owned(),
             data_hash: dataset.data_hash().to_owned(),
             split: split.name().to_owned(),
             protocol: contest.protocol,
-            models: hashes.collect::<Result<_, _>>()?,
+            models: models.map(|c| c.hash.clone()).collect(),
+            mean_frame: format!("{:08x}", crc32fast::hash(&mean_frame)),
             rows: rows
                 .map(|s| (s.label.clone(), s.candidate, s.setting.clone()))
                 .collect(),
-        })
+        }
     }
 }
 
@@ -87,18 +86,25 @@ impl ScoreFile {
         for entry in entries {
             let name = entry?.file_name();
             let name = name.to_string_lossy();
-            if name.starts_with("scores") && name.ends_with(".jsonl") {
+            if name.starts_with("scores") && name.ends_with(".jsonl") && name != own {
                 read(&folder.join(&*name), identity, &mut lines)?;
             }
         }
         let path = folder.join(own);
         let failed = || path.display().to_string();
+        let whole = if path.exists() {
+            read(&path, identity, &mut lines)?
+        } else {
+            0
+        };
         let mut file = OpenOptions::new()
             .create(true)
             .append(true)
             .open(&path)
             .with_context(failed)?;
-        if file.metadata().with_context(failed)?.len() == 0 {
+        // A kill may have left half a line. Another shard's may be one that it is writing right now.
+        file.set_len(whole).with_context(failed)?;
+        if whole == 0 {
             writeln!(file, "{}", serde_json::to_string(identity)?).with_context(failed)?;
         }
         Ok(Self {
@@ -124,6 +130,12 @@ impl ScoreFile {
         Ok(())
     }
 
+    /// Episodes that could not be scored.
+    pub fn left_out(&self) -> usize {
+        let lines = self.lines.values();
+        lines.filter(|line| line.left_out.is_some()).count()
+    }
+
     /// Places and scores of the episodes that have some, in the dataset's order.
     pub fn scores(self) -> (Vec<usize>, Vec<EpisodeScores>) {
         let lines = self.lines.into_values();
@@ -133,8 +145,12 @@ impl ScoreFile {
     }
 }
 
-/// Reads a score file; a torn last line is cut off.
-fn read(path: &Path, identity: &Identity, lines: &mut BTreeMap<usize, Line>) -> anyhow::Result<()> {
+/// Reads a score file but for a torn last line; the length of what is whole.
+fn read(
+    path: &Path,
+    identity: &Identity,
+    lines: &mut BTreeMap<usize, Line>,
+) -> anyhow::Result<u64> {
     let failed = || path.display().to_string();
     let mut file = BufReader::new(File::open(path).with_context(failed)?);
     let (mut whole, mut text) = (0, Vec::new());
@@ -160,12 +176,5 @@ fn read(path: &Path, identity: &Identity, lines: &mut BTreeMap<usize, Line>) -> 
         whole += text.len() as u64;
         text.clear();
     }
-    if !text.is_empty() {
-        let file = OpenOptions::new()
-            .write(true)
-            .open(path)
-            .with_context(failed)?;
-        file.set_len(whole).with_context(failed)?;
-    }
-    Ok(())
+    Ok(whole)
 }

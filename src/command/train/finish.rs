@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use super::sets::Sets;
 use crate::data::{Dataset, Episodes};
 use crate::episode::{Episode, EpisodeSource};
-use crate::eval::regression;
+use crate::eval::{Protocol, regression};
 use crate::measure::events::contact_newtons;
 use crate::model::Model;
 use crate::model::checkpoint::{MEAN_FRAME, PROBE, REPORT, write_atomic};
@@ -127,7 +127,8 @@ fn regressors(
     train: Episodes,
 ) -> anyhow::Result<Option<Regressors>> {
     let episodes = (0..train.len()).into_par_iter();
-    let latents = regression::latents(inspector, episodes.map(|i| anyhow::Ok(train.get(i)?)))?;
+    let episodes = episodes.map(|i| anyhow::Ok(Some(train.get(i)?)));
+    let latents = regression::latents(inspector, episodes, Protocol::SYNTHETIC)?;
     Ok(latents.fit()?)
 }
 
