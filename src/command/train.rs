@@ -56,7 +56,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
     let sets = Sets::load(
         &dataset,
-        config.layout(),
+        &config,
         origin.seed,
         args.memory,
         &args.out,
@@ -153,11 +153,20 @@ fn asked(args: &TrainArgs) -> Option<Budget> {
     (budget != Budget::default()).then_some(budget)
 }
 
-/// The config and the origin of the run in the run folder.
+/// The config and the origin of the run in the run folder. The config is the run's own: what would change it on the way
+/// is refused, the same command again is not.
 fn resume(args: &TrainArgs) -> anyhow::Result<(Config, Origin)> {
     let nothing = || format!("nothing to resume in {}", args.out.display());
     let config =
         checkpoint::load_config(&args.out.join(checkpoint::CONFIG)).with_context(nothing)?;
+    for assignment in &args.set {
+        let changed = config.clone().set(assignment);
+        if changed.map_err(|what| anyhow!("--set {what}"))? != config {
+            bail!(
+                "--set {assignment} is not what this run was started with; leave it out, or start a new --out"
+            );
+        }
+    }
     let origin = Origin::read(&args.out).with_context(nothing)?;
     Ok((config, origin))
 }

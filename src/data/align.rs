@@ -4,6 +4,8 @@ mod interpolate;
 mod irregular;
 mod resample;
 
+pub(super) use resample::square;
+
 use interpolate::{Clock, held_mean, linear, planar_pose};
 
 use super::error::DataError;
@@ -80,7 +82,7 @@ pub(super) fn align_on(
         layout,
         frames: frames
             .into_iter()
-            .map(|frame| resample::square(frame, layout.frame_size))
+            .map(|frame| square(frame, layout.frame_size))
             .collect(),
         haptic,
         proprio,

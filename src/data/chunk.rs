@@ -3,7 +3,10 @@
 use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-use super::record::{HEAD, LENGTH_LIMIT, Records, put_record};
+use super::record::{HEAD, Records, put_record};
+
+/// An unpacked chunk is no larger: writers make them of some MiB.
+const CHUNK_LIMIT: usize = 256 << 20;
 
 /// The records of `span`, those of its chunks in their place. A chunk's checksum is verified, which the container's
 /// own indexed reader never does.
@@ -28,8 +31,16 @@ pub(super) fn unpack(span: &[u8]) -> Result<Vec<u8>, String> {
             }
             block.extend_from_slice(&data);
         } else {
-            let size = usize::try_from(header.uncompressed_size).unwrap_or(usize::MAX);
-            block.reserve(size.min(LENGTH_LIMIT));
+            // The reader holds what it unpacks to the size that is said.
+            let said = header.uncompressed_size;
+            let size = usize::try_from(said)
+                .ok()
+                .filter(|&size| size <= CHUNK_LIMIT);
+            let limit = CHUNK_LIMIT >> 20;
+            let size = size.ok_or_else(|| {
+                format!("a chunk of {said} bytes, where {limit} MiB are read at most; write it in smaller ones")
+            })?;
+            block.reserve(size);
             decompress(body, &mut block)?;
         }
     }
@@ -42,7 +53,7 @@ fn decompress(body: &[u8], block: &mut Vec<u8>) -> Result<(), String> {
         .with_skip_start_magic(true)
         .with_skip_end_magic(true)
         .with_prevalidate_chunk_crcs(true)
-        .with_record_length_limit(LENGTH_LIMIT);
+        .with_record_length_limit(CHUNK_LIMIT);
     let mut reader = LinearReader::new_with_options(options);
     let mut head = Vec::with_capacity(HEAD);
     put_record(&mut head, op::CHUNK, &[]);
@@ -69,6 +80,11 @@ fn decompress(body: &[u8], block: &mut Vec<u8>) -> Result<(), String> {
 /// # Errors
 /// A phrase that says what is damaged.
 pub(super) fn parse(opcode: u8, body: &[u8]) -> Result<Record<'_>, String> {
+    if opcode == op::ATTACHMENT {
+        // Nothing here wants one, and the container's parser panics at one that is too short.
+        let data = body.into();
+        return Ok(Record::Unknown { opcode, data });
+    }
     mcap::parse_record(opcode, body)
         .map_err(|error| format!("a record (opcode {opcode:#04x}) does not parse: {error}"))
 }

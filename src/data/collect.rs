@@ -1,5 +1,6 @@
 //! Gathers an episode's decoded messages into a [`Recording`].
 
+use super::align::square;
 use super::cdr::{
     CompressedImage, Image, Pose, Quaternion, Stamped, Twist, Vector3, Wrench, decode,
 };
@@ -21,6 +22,7 @@ type Row<T> = (u64, i64, T);
 /// The messages so far, in file order.
 #[derive(Default)]
 pub(super) struct Collector {
+    frame_size: Option<usize>,
     frames: Vec<Row<Frame>>,
     wrench: Vec<Row<[f64; 6]>>,
     ee_position: Vec<Row<[f64; 3]>>,
@@ -30,6 +32,14 @@ pub(super) struct Collector {
 }
 
 impl Collector {
+    /// One that makes frames squares of `frame_size` pixels, or leaves them as they are.
+    pub(super) fn new(frame_size: Option<usize>) -> Self {
+        Self {
+            frame_size,
+            ..Self::default()
+        }
+    }
+
     /// Decodes one message.
     ///
     /// # Errors
@@ -38,13 +48,12 @@ impl Collector {
         match stream.ty {
             MessageType::Image => {
                 let image: Image<'_> = decode(payload)?;
-                let frame = grey(&image)?;
-                self.frames.push((log, image.header.stamp_or(log), frame));
+                self.frame(log, image.header.stamp_or(log), grey(&image)?);
             }
             MessageType::CompressedImage => {
                 let image: CompressedImage<'_> = decode(payload)?;
                 let frame = grey_from_compressed(image.data)?;
-                self.frames.push((log, image.header.stamp_or(log), frame));
+                self.frame(log, image.header.stamp_or(log), frame);
             }
             MessageType::Wrench => {
                 let Stamped { header, value } = decode::<Stamped<'_, Wrench>>(payload)?;
@@ -79,6 +88,14 @@ impl Collector {
             }
         }
         Ok(())
+    }
+
+    fn frame(&mut self, log: u64, stamp: i64, frame: Frame) {
+        let frame = match self.frame_size {
+            Some(size) => square(&frame, size),
+            None => frame,
+        };
+        self.frames.push((log, stamp, frame));
     }
 
     fn pose(&mut self, role: Role, log: u64, stamp: i64, at: Vector3, turned: Quaternion) {

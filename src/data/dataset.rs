@@ -179,7 +179,7 @@ impl Dataset {
     /// Damage in a chunk it touches, a message that does not decode, an index out of range.
     pub fn recording(&self, index: usize) -> Result<Recording, DataError> {
         let (file, meta) = self.episode(index)?;
-        file.recording(meta, &self.cache)
+        file.recording(meta, None, &self.cache)
     }
 
     /// Reads episode `index` and lays it out on its steps.
@@ -188,7 +188,7 @@ impl Dataset {
     /// Those of [`Dataset::recording`], and fewer than two images.
     pub fn episode_aligned(&self, index: usize, layout: Layout) -> Result<Episode, DataError> {
         let (file, meta) = self.episode(index)?;
-        let recording = file.recording(meta, &self.cache)?;
+        let recording = file.recording(meta, Some(layout.frame_size), &self.cache)?;
         align_on(&recording, layout, &self.topics).map_err(|error| match error {
             DataError::TooFewImages { place, images } => DataError::TooFewImages {
                 place: format!("{}: {place}", file.path.display()),
@@ -217,6 +217,15 @@ impl Dataset {
                 index,
                 count: self.metas.len(),
             })
+    }
+
+    /// Where an episode comes from, whichever dataset it is opened as part of: the hash of its file, and its place in
+    /// it; none if there is no such episode.
+    pub fn origin(&self, index: usize) -> Option<(&str, usize)> {
+        let home = *self.homes.get(index)?;
+        let before = self.homes[..index].iter();
+        let place = before.filter(|&&other| other == home).count();
+        Some((&self.files.get(home)?.index.hash, place))
     }
 
     /// The split of each episode. What names none is `train`; where none is of `val`, a tenth of `train` is, by `seed`.

@@ -151,15 +151,17 @@ impl McapFile {
             .filter(move |span| overlaps(span, meta))
     }
 
-    /// Reads one episode's messages, from the spans that it touches.
+    /// Reads one episode's messages, from the spans that it touches; frames as squares of `frame_size` pixels, if one is
+    /// given, so that those of a long recording need not all be held as the camera made them.
     pub(super) fn recording(
         &self,
         meta: &EpisodeMeta,
+        frame_size: Option<usize>,
         cache: &BlockCache,
     ) -> Result<Recording, DataError> {
         let mut file = File::open(&self.path).map_err(DataError::io(&self.path))?;
         let (start, end) = log_range(meta);
-        let mut collector = Collector::default();
+        let mut collector = Collector::new(frame_size);
         for span in self.spans_of(meta) {
             let block = cache.get((self.number, span.offset), || {
                 self.read_span(&mut file, span)

@@ -43,21 +43,25 @@ fn fields(name: &str, text: &str) -> Result<Vec<String>, String> {
     let schema = MessageSchema::parse(name, &text.replace("/msg/", "/"))
         .map_err(|error| format!("its definition cannot be parsed: {error:#}"))?;
     let mut found = Vec::new();
-    flatten(&schema, &schema.spec, "", 0, &mut found)?;
+    let mut left = FIELD_LIMIT;
+    flatten(&schema, &schema.spec, ("", 0), &mut left, &mut found)?;
     Ok(found)
 }
 
+/// `left` fields may still be visited, of whatever type: a type without one of its own can be nested as well.
 fn flatten(
     schema: &MessageSchema,
     spec: &MessageSpecification,
-    prefix: &str,
-    depth: usize,
+    (prefix, depth): (&str, usize),
+    left: &mut usize,
     found: &mut Vec<String>,
 ) -> Result<(), String> {
-    if depth > DEPTH_LIMIT || found.len() > FIELD_LIMIT {
-        return Err("its definition nests without end".to_owned());
+    const ENDLESS: &str = "its definition nests without end";
+    if depth > DEPTH_LIMIT {
+        return Err(ENDLESS.to_owned());
     }
     for field in &spec.fields {
+        *left = left.checked_sub(1).ok_or(ENDLESS)?;
         let path = format!("{prefix}{}", field.name);
         let (element, suffix) = match &field.ty {
             Type::Array { ty, size } => (
@@ -76,13 +80,8 @@ fn flatten(
             }
             Type::Complex(complex) => {
                 let nested = resolve(schema, spec, complex)?;
-                flatten(
-                    schema,
-                    nested,
-                    &format!("{path}{suffix}."),
-                    depth + 1,
-                    found,
-                )?;
+                let inner = (&*format!("{path}{suffix}."), depth + 1);
+                flatten(schema, nested, inner, left, found)?;
             }
             Type::Array { .. } => return Err("it has arrays of arrays".to_owned()),
         }
@@ -160,6 +159,15 @@ mod tests {
     fn a_type_that_contains_itself_is_refused() {
         let text = "Loop next\n===\nMSG: geometry_msgs/Loop\nLoop next\n";
         let said = check(MessageType::Point, text).unwrap_err();
+        assert!(said.contains("without end"), "{said}");
+        // Nor is there an end to wait for where types without a field are nested, 40 to the power of 12 of them.
+        let mut types = vec!["A0 next".to_owned()];
+        for depth in 0..12 {
+            types.push(format!("===\nMSG: geometry_msgs/A{depth}"));
+            types.extend((0..40).map(|i| format!("A{} f{i}", depth + 1)));
+        }
+        types.push("===\nMSG: geometry_msgs/A12\nuint8 A=1\n".to_owned());
+        let said = check(MessageType::Point, &types.join("\n")).unwrap_err();
         assert!(said.contains("without end"), "{said}");
     }
 }

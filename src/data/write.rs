@@ -35,7 +35,7 @@ pub struct DatasetWriter {
 }
 
 impl DatasetWriter {
-    /// Begins a dataset that will be `path`.
+    /// Begins a dataset that will be `path`. A file of that name is replaced: whoever must not lose one looks first.
     ///
     /// # Errors
     /// If no file can be made in its folder.

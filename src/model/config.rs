@@ -151,6 +151,15 @@ impl Config {
         {
             return refuse(key, format!("must lie between 1 and {MOST}, is {size}"));
         }
+        // K matrices of Z by Z and Z by U, the largest there are, each read from a hidden layer.
+        let largest = self.mixtures * self.latent * (self.latent + 2);
+        if largest > MOST_TOGETHER {
+            let what = format!(
+                "with {} latents these are {largest} numbers, more than {MOST_TOGETHER}",
+                self.latent
+            );
+            return refuse("mixtures", what);
+        }
         self.haptic.validate("haptic", &HAPTIC_CHANNELS)?;
         self.proprio.validate("proprio", &PROPRIO_CHANNELS)?;
         self.training.validate(streams.len())
@@ -159,6 +168,8 @@ impl Config {
 
 /// No size of a model is larger.
 const MOST: usize = 4096;
+/// Nor are the base matrices of its dynamics together: 256 MiB of them.
+const MOST_TOGETHER: usize = 1 << 26;
 
 fn refuse<T>(key: &'static str, what: impl Into<String>) -> Result<T, ConfigError> {
     Err(ConfigError {
@@ -208,6 +219,10 @@ mod tests {
             refused(|c| c.training.rollouts = 1.5),
             Err("training.rollouts")
         );
+        // Each size may be had, but not all of them at once.
+        assert_eq!(refused(|c| c.latent = 2048), Ok(()));
+        let large = refused(|c| (c.latent, c.mixtures) = (4096, 4096));
+        assert_eq!(large, Err("mixtures"));
         assert_eq!(refused(|c| c.training.segment = 1), Err("training.segment"));
         assert_eq!(
             refused(|c| c.training.learning_rate = f64::NAN),

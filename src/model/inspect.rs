@@ -23,6 +23,9 @@ pub struct Inspector<M = Model> {
     weights: Weights,
 }
 
+/// Samples that go through a network at once: its layers hold no more than these, however long an episode is.
+const BLOCK: usize = 64;
+
 /// `(1, n, Z)` or `(n, Z)` Gaussians as numbers.
 fn trace(gaussian: &DiagGaussian, latent: usize) -> Result<GaussianTrace> {
     Ok(GaussianTrace {
@@ -77,16 +80,31 @@ impl<M: Borrow<Model>> Inspector<M> {
         if streams.len() != encoder.streams() {
             candle_core::bail!("expert {index} got {} streams", streams.len());
         }
-        let seen = streams
-            .iter()
-            .enumerate()
-            .map(|(i, seen)| {
-                let shape = (beliefs, encoder.inputs(i));
-                Tensor::from_slice(seen, shape, &Device::Cpu)
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let expert = encoder.encode(&seen, weights, false)?;
-        trace(&expert, self.model().config.latent)
+        let mut said = GaussianTrace {
+            latent: self.model().config.latent,
+            ..GaussianTrace::default()
+        };
+        for from in (0..beliefs).step_by(BLOCK) {
+            let until = beliefs.min(from + BLOCK);
+            let block = |(i, seen): (usize, &Vec<f32>)| {
+                let inputs = encoder.inputs(i);
+                let Some(rows) = seen.get(from * inputs..until * inputs) else {
+                    candle_core::bail!(
+                        "stream {i} of expert {index} is shorter than {beliefs} beliefs"
+                    );
+                };
+                Tensor::from_slice(rows, (until - from, inputs), &Device::Cpu)
+            };
+            let seen: Vec<Tensor> = streams
+                .iter()
+                .enumerate()
+                .map(block)
+                .collect::<Result<_>>()?;
+            let block = trace(&encoder.encode(&seen, weights, false)?, said.latent)?;
+            said.mean.extend(block.mean);
+            said.log_var.extend(block.log_var);
+        }
+        Ok(said)
     }
 
     /// The beliefs for one setting of the switches.
@@ -156,15 +174,15 @@ impl<M: Borrow<Model>> Inspector<M> {
 
     /// What expert `index` would see for each latent, `(n, Z)` row major: `(n, outputs)` numbers.
     pub fn decode(&self, index: usize, latents: &[f32]) -> Result<Vec<f32>> {
-        if latents.is_empty() {
-            return Ok(Vec::new());
-        }
         let latent = self.model().config.latent;
-        let latents = Tensor::from_slice(latents, (latents.len() / latent, latent), &Device::Cpu)?;
-        self.model().decoders[index]
-            .decode(&latents, &self.weights.decoders[index])?
-            .flatten_all()?
-            .to_vec1()
+        let (decoder, weights) = (&self.model().decoders[index], &self.weights.decoders[index]);
+        let mut decoded = Vec::new();
+        for block in latents.chunks(BLOCK * latent) {
+            let block = Tensor::from_slice(block, (block.len() / latent, latent), &Device::Cpu)?;
+            let block = decoder.decode(&block, weights)?.flatten_all()?;
+            decoded.extend(block.to_vec1::<f32>()?);
+        }
+        Ok(decoded)
     }
 
     /// The newest frame for each latent, `(n, Z)` row major, in [0, 1]: `(n, height * width)` numbers.

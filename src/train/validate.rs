@@ -55,6 +55,10 @@ pub fn validate(model: &Model, val: Episodes) -> Result<Validation, TrainError> 
         add(&mut validation.kl_per_latent, kl);
         for episode in part {
             let protocol = Protocol::SYNTHETIC.within(episode.steps());
+            if protocol.horizon == 0 || protocol.context <= model.config.frame_stack {
+                // Too short to see anything and still predict.
+                continue;
+            }
             let errors = eval::open_loop_mse(&inspector, episode, protocol)?;
             let psnr_db = errors
                 .into_iter()

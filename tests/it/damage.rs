@@ -68,6 +68,23 @@ fn a_cut_file_opens_up_to_the_cut() {
 }
 
 #[test]
+fn an_attachment_too_short_to_be_one_is_passed_over() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("attached.mcap");
+    let mut bytes = fs::read(sample()).unwrap();
+    // Without its end the file is read through.
+    bytes.truncate(bytes.len() - 40);
+    let header = u64::from_le_bytes(bytes[9..17].try_into().unwrap());
+    let mut record = vec![0x09];
+    record.extend(32_u64.to_le_bytes());
+    record.extend([0; 32]);
+    let at = 17 + header as usize;
+    bytes.splice(at..at, record);
+    fs::write(&path, &bytes).unwrap();
+    assert_eq!(survive(&path), 2);
+}
+
+#[test]
 fn flipped_bits_never_go_through() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("flipped.mcap");

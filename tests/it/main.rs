@@ -26,5 +26,6 @@ mod resume;
 mod sample;
 mod tensorboard;
 mod topics;
+mod training;
 mod web;
 mod whole_or_absent;

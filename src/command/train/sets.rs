@@ -10,7 +10,9 @@ use indicatif::ProgressStyle;
 
 use super::show;
 use crate::data::{Dataset, Episodes, Store};
-use crate::episode::{EpisodeSource, Layout, Split};
+use crate::episode::{EpisodeSource, Split};
+use crate::model::config::Config;
+use crate::model::observation::missing;
 
 /// Episodes to train on and for validation, all of one length, and why others were left out.
 pub struct Sets {
@@ -23,11 +25,11 @@ pub struct Sets {
 
 impl Sets {
     /// Reads every episode that is not of the test split; the validation split is cut by `seed` where the dataset names
-    /// none. What is beyond `memory` bytes is set aside in `folder`. An odd recording would teach the oddity, and one
-    /// of another length does not fit a batch: they are left out.
+    /// none. What is beyond `memory` bytes is set aside in `folder`. An odd recording would teach the oddity, one that
+    /// lacks what the model sees teaches it nothing, and one of another length does not fit a batch: they are left out.
     pub fn load(
         dataset: &Dataset,
-        layout: Layout,
+        config: &Config,
         seed: u64,
         memory: u64,
         folder: &Path,
@@ -57,19 +59,25 @@ impl Sets {
                 let id = dataset.metas()[index].id.clone();
                 sets.left_out.push((id, why));
             };
-            let episode = match dataset.load(index, layout) {
+            let episode = match dataset.load(index, config.layout()) {
                 Ok(episode) => episode,
                 Err(error) => {
                     leave_out(error.to_string());
                     continue;
                 }
             };
-            if split == Split::Train {
-                *lengths.entry(episode.steps()).or_insert(0_usize) += 1;
-            }
             if let Some(flag) = episode.flags.first() {
                 leave_out(format!("{}: {}", flag.topic, flag.what));
                 continue;
+            }
+            let missing = missing(config, &episode);
+            if !missing.is_empty() {
+                let (roles, model) = (missing.join(", "), &config.name);
+                leave_out(format!("lacks {roles}, which model `{model}` sees"));
+                continue;
+            }
+            if split == Split::Train {
+                *lengths.entry(episode.steps()).or_insert(0_usize) += 1;
             }
             let stored = sets.store.push(episode)?;
             if split == Split::Train {

@@ -3,7 +3,7 @@
 use crate::episode::Frame;
 
 /// `frame` as a square of `size` pixels; as it is where it has that size.
-pub(super) fn square(frame: &Frame, size: usize) -> Frame {
+pub(in crate::data) fn square(frame: &Frame, size: usize) -> Frame {
     if (frame.width, frame.height) == (size, size) {
         return frame.clone();
     }
