@@ -7,7 +7,7 @@ mod scores;
 mod settings;
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -40,8 +40,19 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         args.model.clone()
     };
     let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
+    let mut contest = contest(args, &folders)?;
     let (split, wanted) = wanted(args, &dataset, &folders)?;
-    let contest = contest(args, &folders, (&dataset, split), &stop)?;
+    // A shard keeps scores alone, which no regressor has a part in.
+    if let (Some(data), None) = (&args.fit, args.shard) {
+        let fit = Fit {
+            data,
+            topics: &args.mapping.topics,
+            protocol: contest.protocol,
+            never: wanted.iter().filter_map(|&i| dataset.origin(i)).collect(),
+            stop: &stop,
+        };
+        fit.each(&mut contest.candidates, &folders)?;
+    }
     if let Some(out) = &args.out {
         std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
     }
@@ -91,17 +102,19 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
+    let left_out = file.left_out();
     let scope = Scope {
         data: dataset.name().to_owned(),
         data_hash: dataset.data_hash().to_owned(),
         split: split.name().to_owned(),
-        left_out: file.left_out(),
+        left_out: left_out.len(),
     };
     let (indices, all) = file.scores();
     let scored = Scored {
         contest: &contest,
         all: &all,
         indices: &indices,
+        left_out: &left_out,
         scope: &scope,
         dataset: &dataset,
         folders: &folders,
@@ -109,13 +122,8 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     conclude(args, &scored)
 }
 
-/// The models under every setting, to be scored on a split of a dataset.
-fn contest(
-    args: &EvalArgs,
-    folders: &[PathBuf],
-    scored: (&Dataset, Split),
-    stop: &AtomicBool,
-) -> anyhow::Result<Contest> {
+/// The models under every setting.
+fn contest(args: &EvalArgs, folders: &[PathBuf]) -> anyhow::Result<Contest> {
     let preset = match args.preset {
         EvalPreset::Synthetic => Protocol::SYNTHETIC,
         EvalPreset::Mit => Protocol::MIT,
@@ -124,16 +132,7 @@ fn contest(
         context: args.context.unwrap_or(preset.context),
         horizon: args.horizon.unwrap_or(preset.horizon),
     };
-    let mut candidates = candidates::open(folders)?;
-    if let Some(data) = &args.fit {
-        let fit = Fit {
-            data,
-            topics: &args.mapping.topics,
-            protocol,
-            stop,
-        };
-        candidates::fit(&mut candidates, folders, &fit, scored)?;
-    }
+    let candidates = candidates::open(folders)?;
     for candidate in &candidates {
         let stack = candidate.inspector.model().config.frame_stack;
         if protocol.context <= stack {
@@ -150,15 +149,23 @@ fn contest(
     })
 }
 
-/// The split that is scored, and its episodes. Where the dataset names no `val`, every training has cut its own by its
-/// seed: episodes that one model has not seen another was trained on, so such models are refused together.
+/// The split that is scored, and its episodes. Where the dataset names no `val`, every training on it has cut its own by
+/// its seed: episodes that one model has not seen another was trained on, so such models are refused together.
 fn wanted(
     args: &EvalArgs,
     dataset: &Dataset,
     folders: &[PathBuf],
 ) -> anyhow::Result<(Split, Vec<usize>)> {
     let splits = |folder: &Path| dataset.splits(open::split_seed(folder));
-    let first = splits(&folders[0]);
+    let trained_on_it = |folder: &&PathBuf| {
+        let hash = open::report(folder)["data_hash"]
+            .as_str()
+            .map(str::to_owned);
+        hash.is_none_or(|hash| hash == dataset.data_hash())
+    };
+    let cutters: Vec<&PathBuf> = folders.iter().filter(trained_on_it).collect();
+    let cutter = *cutters.first().unwrap_or(&&folders[0]);
+    let first = splits(cutter);
     let split = args.split.unwrap_or_else(|| {
         let has = |split: &Split| first.contains(split);
         let known = [Split::Test, Split::Val].into_iter().find(has);
@@ -169,15 +176,14 @@ fn wanted(
         own.map(|(index, _)| index).collect()
     };
     let wanted = of_split(&first);
-    for folder in &folders[1..] {
+    for folder in cutters.into_iter().skip(1) {
         if of_split(&splits(folder)) != wanted {
             bail!(
-                "{} names no split `val`, and {} and {} have cut theirs by different seeds: of split `{}` one would be \
-                 scored on what it was trained on; evaluate them apart, or on a dataset that names its splits",
+                "{} names no split `val`: {} and {} have each cut their own from `train`, by different seeds; evaluate \
+                 them apart, or on a dataset that names its splits",
                 dataset.name(),
-                folders[0].display(),
-                folder.display(),
-                split.name()
+                cutter.display(),
+                folder.display()
             );
         }
     }
@@ -216,7 +222,7 @@ fn one(contest: &Contest, dataset: &Dataset, index: usize, path: &Path) -> anyho
     let (steps, images) = (episode.steps(), contest.protocol.images());
     if steps < images {
         return Ok(left_out(format!(
-            "episode `{id}` has {steps} images of {images}"
+            "episode `{id}` has {steps} images of {images}; choose a smaller --horizon"
         )));
     }
     let scores = score(contest, &episode).with_context(|| format!("episode `{id}`"))?;
@@ -233,6 +239,8 @@ struct Scored<'a> {
     all: &'a [EpisodeScores],
     /// Their places in the dataset.
     indices: &'a [usize],
+    /// Why others were left out.
+    left_out: &'a [String],
     scope: &'a Scope,
     dataset: &'a Dataset,
     folders: &'a [PathBuf],
@@ -248,11 +256,18 @@ fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
         ..
     } = *scored;
     let Some(summary) = summarise(contest, all, scope)? else {
+        if let Some(why) = scored.left_out.first() {
+            let count = scope.left_out;
+            bail!(
+                "{}: all {count} episodes of split `{}` were left out: {why}",
+                scope.data,
+                scope.split
+            );
+        }
         bail!(
-            "{}: no episode of split `{}` with {} images or more; choose another --split, --context or --horizon",
+            "{}: no episode of split `{}`; choose another --split",
             scope.data,
-            scope.split,
-            contest.protocol.images()
+            scope.split
         );
     };
     let text = markdown::markdown(&summary);

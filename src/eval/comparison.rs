@@ -120,7 +120,7 @@ impl Comparison {
         let Interval { mean, low, high } = self.psnr_db;
         let of = format!("{} episodes", self.episodes);
         let seeds = self.seeds.map_or_else(String::new, |[won, all]| {
-            format!("; {won} of {all} seeds agree")
+            format!("; the first is ahead in {won} of {all} seeds")
         });
         match self.finding {
             Finding::Holds => format!(
@@ -263,8 +263,8 @@ fn rows(sides: &[Side]) -> Vec<&Side> {
     sides.iter().filter(|side| !side.is_trivial()).collect()
 }
 
-/// The paper's claims among the sides of each recipe, and the first recipe against the others model by model; or, in a
-/// set without any of these, each model against the first. Then each model against itself under every setting, and
+/// The paper's claims among the sides of each recipe, and the first recipe against the others model by model; or, where
+/// there is nothing of that to ask, each model against the first. Then each model against itself under every setting, and
 /// each row against the trivial predictors.
 pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
     let rows = rows(sides);
@@ -289,7 +289,7 @@ pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
         let other = first.filter(|first| first.recipe != side.recipe);
         pairs.extend(other.map(|first| (first, *side)));
     }
-    if pairs.is_empty() {
+    if pairs.is_empty() && unasked(sides).is_empty() {
         pairs.extend(trained.iter().skip(1).map(|&row| (row, trained[0])));
     }
     for &side in &set {
@@ -438,6 +438,7 @@ mod tests {
         };
         let of_two = sides(&["v/fast, 12 updates", "vhp/fast, 9 updates"]);
         assert_eq!(unasked(&of_two), [["vhp", "v"]]);
+        assert_eq!(comparisons(&of_two), []);
         assert_eq!(unasked(&sides(&["v/a", "vhp/b", "vhp/a"])), [[""; 2]; 0]);
         assert_eq!(unasked(&sides(&["vhp", "vhp-c//prior off"])), [[""; 2]; 0]);
     }

@@ -160,8 +160,8 @@ fn comparisons(text: &mut String, summary: &Summary) {
     for [better, worse] in &summary.unasked {
         let _ = writeln!(
             text,
-            "- Whether `{better}` predicts better than `{worse}` is not asked: no two of them were trained by one recipe, \
-             on the same data and for as many updates."
+            "- Whether `{better}` predicts better than `{worse}` is not asked: no pair of them shares recipe, data and \
+             updates."
         );
     }
 }

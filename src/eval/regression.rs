@@ -175,7 +175,7 @@ where
     let config = &inspector.model().config;
     let one = |episode: &Episode, poses: &[PlanarPose]| -> Result<Option<Read>> {
         let protocol = protocol.within(episode.steps());
-        if protocol.horizon == 0 {
+        if protocol.horizon == 0 || protocol.context <= config.frame_stack {
             return Ok(None);
         }
         let experts = encode(inspector, episode)?;

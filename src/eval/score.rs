@@ -209,6 +209,10 @@ fn row(
     } else {
         None
     };
+    let means = [&beliefs.posterior.mean, &rolled.gaussians.mean];
+    if means.into_iter().flatten().any(|mean| !mean.is_finite()) {
+        candle_core::bail!("`{}` believes what is not a finite number", subject.label);
+    }
     Ok(SubjectScores {
         frames,
         shares: shares(

@@ -27,7 +27,7 @@ pub fn psnr_db(a: &Frame, b: &Frame) -> Option<f32> {
     squared_error(a, b).map(|sum| psnr_db_from_mse(sum / a.pixels.len() as f64) as f32)
 }
 
-/// PSNR in dB of a mean squared error of values in 0 to 1; that of no number is none.
+/// PSNR in dB of a mean squared error of values in 0 to 1; NaN stays NaN.
 pub fn psnr_db_from_mse(mse: f64) -> f64 {
     // Not `max`, which would make the best score of it.
     let floored = if mse < MSE_FLOOR { MSE_FLOOR } else { mse };

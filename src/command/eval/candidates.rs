@@ -1,8 +1,9 @@
 //! The models that are compared, with what was fitted for them.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -79,70 +80,65 @@ pub struct Fit<'a> {
     pub topics: &'a [(Role, String)],
     /// How predicted beliefs come about.
     pub protocol: Protocol,
+    /// Episodes that are scored, as [`Dataset::origin`] names them.
+    pub never: HashSet<(&'a str, usize)>,
     /// Whether to stop.
     pub stop: &'a AtomicBool,
 }
 
-/// Fits the pose regressors anew. `scored` are the data and split that they are for: never fitted on.
-pub fn fit(
-    candidates: &mut [Candidate],
-    folders: &[PathBuf],
-    fit: &Fit<'_>,
-    scored: (&Dataset, Split),
-) -> anyhow::Result<()> {
-    let data = fit.data.display();
-    let dataset = Dataset::open_with(fit.data, fit.topics)?;
-    if scored.1 == Split::Train && dataset.data_hash() == scored.0.data_hash() {
-        bail!("--fit {data}: these are the episodes that are scored; score another --split");
+impl Fit<'_> {
+    /// Fits those of each candidate.
+    pub fn each(&self, candidates: &mut [Candidate], folders: &[PathBuf]) -> anyhow::Result<()> {
+        let dataset = Dataset::open_with(self.data, self.topics)?;
+        for (candidate, folder) in candidates.iter_mut().zip(folders) {
+            let splits = dataset.splits(open::split_seed(folder)).into_iter();
+            let own = |(i, split)| (split == Split::Train).then_some(i);
+            let train: Vec<usize> = splits.enumerate().filter_map(own).collect();
+            candidate.regressors = Some(self.one(candidate, &dataset, train)?);
+        }
+        Ok(())
     }
-    for (candidate, folder) in candidates.iter_mut().zip(folders) {
-        let model = candidate.inspector.model();
-        let splits = dataset.splits(open::split_seed(folder)).into_iter();
-        let own = |(i, split)| (split == Split::Train).then_some(i);
-        let train: Vec<usize> = splits.enumerate().filter_map(own).collect();
-        if train.is_empty() {
-            bail!("{data}: no episode of split `train` to fit on");
+
+    fn one(
+        &self,
+        candidate: &Candidate,
+        dataset: &Dataset,
+        train: Vec<usize>,
+    ) -> anyhow::Result<Regressors> {
+        let data = self.data.display();
+        let scored = |i: &&usize| dataset.origin(**i).is_some_and(|o| self.never.contains(&o));
+        if let Some(&index) = train.iter().find(scored) {
+            let id = &dataset.metas()[index].id;
+            bail!(
+                "--fit {data}: episode `{id}` of its split `train` is one that is scored; score another --split"
+            );
         }
         let style = ProgressStyle::with_template("fitting {bar:30} {pos}/{len} episodes, {msg}")?;
         let bar = ProgressBar::new(train.len() as u64).with_style(style);
         bar.set_message(candidate.label.clone());
-        let left_out = Mutex::new(Vec::new());
+        let model = candidate.inspector.model();
         let layout = model.config.layout();
         let episodes = train.into_par_iter().map(|index| {
-            if fit.stop.load(Ordering::Relaxed) {
+            if self.stop.load(Ordering::Relaxed) {
                 bail!("stopped");
             }
             bar.inc(1);
             let episode = dataset
                 .load(index, layout)
                 .map_err(|error| error.to_string());
-            let sound = episode.and_then(|e| odd(&e).map_or(Ok(e), Err));
-            Ok(match sound {
-                Ok(episode) => Some(Arc::new(episode)),
-                Err(why) => {
-                    let mut left_out = left_out.lock().unwrap_or_else(PoisonError::into_inner);
-                    left_out.push(why);
-                    None
-                }
-            })
+            let sound = episode.and_then(|episode| odd(&episode).map_or(Ok(episode), Err));
+            if let Err(why) = &sound {
+                bar.suspend(|| eprintln!("left out of the fit: {why}"));
+            }
+            Ok(sound.ok().map(Arc::new))
         });
-        let latents = regression::latents(&Inspector::new(model)?, episodes, fit.protocol)?;
+        let latents = regression::latents(&Inspector::new(model)?, episodes, self.protocol)?;
         bar.finish_and_clear();
-        let mut left_out = left_out
-            .into_inner()
-            .unwrap_or_else(PoisonError::into_inner);
-        left_out.sort();
-        for why in left_out {
-            eprintln!("left out of the fit: {why}");
-        }
-        candidate.regressors = latents.fit()?;
-        if candidate.regressors.is_none() {
-            bail!(
-                "--fit {data}: no object pose is recorded on its split `train`, or on too few images"
-            );
-        }
+        let too_few = "no object pose is recorded in its split `train`, or in too few images";
+        latents
+            .fit()?
+            .with_context(|| format!("--fit {data}: {too_few}"))
     }
-    Ok(())
 }
 
 /// Why an episode says nothing about a model: what was odd when it was recorded, as training has it.

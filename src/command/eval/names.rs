@@ -14,7 +14,8 @@ pub(super) struct Recipe {
     config: Config,
     /// Of its training, where its report says so.
     updates: Option<u64>,
-    /// Names what it was trained on, where its report says so.
+    /// What it was trained on, where its report says so: its name, and what names all that it holds.
+    data: Option<String>,
     data_hash: Option<String>,
 }
 
@@ -43,6 +44,7 @@ impl Recipe {
         Self {
             config,
             updates: report["updates"].as_u64(),
+            data: report["data"].as_str().map(str::to_owned),
             data_hash: report["data_hash"].as_str().map(str::to_owned),
         }
     }
@@ -73,18 +75,19 @@ impl Recipe {
     }
 
     /// What to call it: the shortest words first, the surest last.
-    fn words(&self, folder: &Path) -> [String; 3] {
+    fn words(&self, folder: &Path) -> [String; 4] {
         let path = folder.display().to_string();
         let own = folder
             .file_name()
             .map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
         let Some(preset) = self.preset() else {
-            return [own.clone(), own, path];
+            return [own.clone(), own.clone(), own, path];
         };
-        let counted = self
-            .updates
-            .map(|n| format!("{}, {n} updates", preset.name()));
-        [preset.name().to_owned(), counted.unwrap_or(own), path]
+        let preset = preset.name();
+        let counted = self.updates.map(|n| format!("{preset}, {n} updates"));
+        let data = self.data.as_ref().map(|data| format!("{preset}, {data}"));
+        let [counted, data] = [counted, data].map(|words| words.unwrap_or_else(|| own.clone()));
+        [preset.to_owned(), counted, data, path]
     }
 }
 
@@ -97,7 +100,7 @@ pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[
             kinds.push(i);
         }
     }
-    let words: Vec<[String; 3]> = kinds
+    let words: Vec<[String; 4]> = kinds
         .iter()
         .map(|&kind| recipes[kind].words(&folders[kind]))
         .collect();
@@ -106,7 +109,7 @@ pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[
             let same = words.iter().filter(|w| w[*level] == words[kind][*level]);
             same.count() == 1
         };
-        words[kind][(0..2).find(tells).unwrap_or(2)].clone()
+        words[kind][(0..3).find(tells).unwrap_or(3)].clone()
     };
     for (candidate, recipe) in candidates.iter_mut().zip(recipes) {
         let kind = kinds.iter().position(|&kind| recipes[kind].is_like(recipe));
@@ -153,7 +156,7 @@ mod tests {
                 change(&mut config);
             }
             let data = folder.split_once('/').map(|(data, _)| data);
-            let report = json!({ "updates": updates, "data_hash": data });
+            let report = json!({ "updates": updates, "data": data, "data_hash": data });
             recipes.push(Recipe::of(&config, &report));
             config.training.error_weights.clear();
             candidates.push(Candidate {
@@ -203,8 +206,15 @@ mod tests {
         let runs = [("v", Fast, 995, "a"), ("v", Fast, 1003, "b")];
         assert_eq!(called(&runs, same), ["v seed 0", "v seed 1"]);
         // Nor are runs on other data further seeds.
-        let runs = [("v", Fast, 9, "sim/v"), ("v", Fast, 9, "real/v")];
-        assert_eq!(called(&runs, same), ["v sim/v", "v real/v"]);
+        let runs = [
+            ("v", Fast, 9, "sim/v"),
+            ("v", Fast, 9, "real/v"),
+            ("vhp", Fast, 9, "real/vhp"),
+        ];
+        assert_eq!(
+            called(&runs, same),
+            ["v fast, sim", "v fast, real", "vhp fast, real"]
+        );
         // One that was changed by hand is called by its folder.
         let runs = [("v", Fast, 9, "runs/a"), ("v", Fast, 9, "runs/b")];
         assert_eq!(

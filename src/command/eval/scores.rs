@@ -130,10 +130,10 @@ impl ScoreFile {
         Ok(())
     }
 
-    /// Episodes that could not be scored.
-    pub fn left_out(&self) -> usize {
+    /// Why each episode that could not be scored was left out.
+    pub fn left_out(&self) -> Vec<String> {
         let lines = self.lines.values();
-        lines.filter(|line| line.left_out.is_some()).count()
+        lines.filter_map(|line| line.left_out.clone()).collect()
     }
 
     /// Places and scores of the episodes that have some, in the dataset's order.

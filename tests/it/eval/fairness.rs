@@ -1,8 +1,9 @@
 //! Nothing is scored on what it was fitted on, unless it is said.
 
 use std::fs;
+use std::path::Path;
 
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::common::{answer, poescope, simulated, three_experts, untrained};
 use crate::data::{recordings, write};
@@ -29,7 +30,7 @@ fn regressors_are_fitted_on_training_episodes_alone() {
         eval.arg("--model").arg(&model);
         eval
     };
-    let poses = |fit: &std::path::Path| {
+    let poses = |fit: &Path| {
         let mut eval = eval(&["--json"]);
         let said = answer(eval.arg("--data").arg(&test).arg("--fit").arg(fit));
         serde_json::from_str::<Value>(&said).unwrap()["regression"].clone()
@@ -43,14 +44,23 @@ fn regressors_are_fitted_on_training_episodes_alone() {
     ] {
         assert!(said.contains(title), "{said}");
     }
+    // Nor may they be among the training episodes of a larger dataset.
     let mut scored = eval(&["--split", "train"]);
-    let output = scored.arg("--data").arg(&train).arg("--fit").arg(&train);
+    let alone = train.join("train.mcap");
+    let output = scored.arg("--data").arg(&alone).arg("--fit").arg(&all);
     let output = output.output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(
-        !output.status.success() && said.contains("these are the episodes that are scored"),
+        !output.status.success() && said.contains("of its split `train` is one that is scored"),
         "{said}"
     );
+}
+
+/// A report of a training by a seed on some data.
+fn trained(model: &Path, seed: &str, data_hash: Option<&str>) {
+    let seed: u64 = seed.parse().unwrap();
+    let report = json!({ "seed": seed, "data_hash": data_hash });
+    fs::write(model.join("report.json"), report.to_string()).unwrap();
 }
 
 #[test]
@@ -60,7 +70,7 @@ fn models_that_cut_their_own_validation_split_are_not_scored_together_on_it() {
     let data = simulated(folder.path().join("all.mcap"), 20, &options);
     let models = ["1", "2"].map(|seed| {
         let model = untrained(folder.path().join(seed), three_experts());
-        fs::write(model.join("report.json"), format!("{{\"seed\": {seed}}}")).unwrap();
+        trained(&model, seed, None);
         model
     });
     let mut eval = poescope();
@@ -71,9 +81,12 @@ fn models_that_cut_their_own_validation_split_are_not_scored_together_on_it() {
     let output = eval.arg("--model").arg(&models[1]).output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(
-        !output.status.success() && said.contains("have cut theirs by different seeds"),
+        !output.status.success() && said.contains("have each cut their own from `train`"),
         "{said}"
     );
+    // Those of other data have cut nothing of this.
+    trained(&models[1], "2", Some("other"));
+    answer(&mut eval);
 }
 
 #[test]
