@@ -78,8 +78,6 @@ pub struct Session {
     models: Vec<Arc<ModelInfo>>,
     /// What each episode is called in state strings: its name, with a number where an earlier one has the same.
     episode_keys: Vec<String>,
-    /// The models themselves, for the threads that compute.
-    predictors: Vec<Arc<dyn Predictor>>,
     /// W of each model's position probe.
     position_weights: Vec<Option<Arc<[f32]>>>,
     shared: Arc<Shared>,
@@ -161,12 +159,11 @@ impl Session {
             .iter()
             .map(|m| m.position_weights().map(Arc::from))
             .collect();
-        let shared = Arc::new(Shared::default());
+        let shared = Arc::new(Shared::of(models.clone()));
         let mut session = Self {
             shown: show::empty(source.as_ref(), &infos),
             models: infos,
             episode_keys: restore::keys(source.metas().iter().map(|meta| meta.id.as_str())),
-            predictors: models.clone(),
             position_weights,
             compare: None,
             marks: BTreeMap::new(),
@@ -232,16 +229,23 @@ impl Session {
     /// Lets time go by: takes in what has been computed and plays on. True if the snapshot is another one than
     /// after the last update.
     pub fn update(&mut self, dt: Duration) -> bool {
+        let cursor = self.playback.cursor;
+        let opened = self.opened().map(Arc::clone);
+        // Before what is asked now: `dt` is not time that a playback which begins with it has played.
+        if opened.is_some_and(|opened| self.playback.update(dt, &opened.view.secs)) {
+            self.settle(cursor);
+        }
         self.hear();
         let cursor = self.playback.cursor;
-        let mut changed = self.collect();
-        if let Some(opened) = self.opened().map(Arc::clone) {
-            changed |= self.playback.update(dt, &opened.view.secs);
-        }
-        if changed {
+        if self.collect() {
             self.settle(cursor);
         }
         std::mem::take(&mut self.news)
+    }
+
+    /// What an episode is called in state strings: its name, with a number where an earlier one has the same.
+    pub fn episode_key(&self, index: usize) -> Option<&str> {
+        self.episode_keys.get(index).map(String::as_str)
     }
 
     /// Everything a face may show.

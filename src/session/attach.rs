@@ -9,6 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use super::Session;
 use super::command::Command;
+use super::predict::Predictor;
 use super::snapshot::{Message, Snapshot};
 use super::wants::Wants;
 use super::worker::Shared;
@@ -63,6 +64,11 @@ impl Attached {
     pub fn say(&self, message: Message) {
         *lock(&self.said) = Some(message);
         self.shared.wake();
+    }
+
+    /// The models as they are now: a run that is followed leaves newer ones.
+    pub fn models(&self) -> Vec<Arc<dyn Predictor>> {
+        self.shared.models()
     }
 
     /// The newest snapshot.
@@ -172,6 +178,19 @@ mod tests {
         assert!(one.snapshot().experts[1].alpha.abs() < f32::EPSILON);
         assert_eq!(one.snapshot().state, session.snapshot().state);
         assert!(told.load(Ordering::Relaxed) > 0);
+    }
+
+    #[test]
+    fn the_wait_for_a_key_is_no_time_that_it_has_played() {
+        let mut session = session();
+        let face = session.attach(Box::new(|| {}));
+        assert!(face.apply(Command::TogglePlay));
+        session.update(Duration::from_mins(1));
+        assert_eq!((face.snapshot().playing, face.snapshot().cursor), (true, 0));
+        for _ in 0..4 {
+            session.update(Duration::from_mins(1));
+        }
+        assert!(face.snapshot().cursor > 0);
     }
 
     #[test]

@@ -63,6 +63,12 @@ impl Input {
         let taken = match self.mode {
             None => Taken::Not,
             Some(Mode::Prompt) => return self.type_key(key, snapshot),
+            // 9 is the prior here too, and the session says why it has no solo.
+            Some(Mode::Solo) if key.as_char() == Some('9') => {
+                self.mode = None;
+                let prior = snapshot.experts.len().saturating_sub(1);
+                Taken::Action(Action::Session(Command::Solo(prior)))
+            }
             Some(Mode::Solo) => digit(key).map_or(Taken::Not, |position| {
                 self.mode = None;
                 Taken::Action(Action::Session(Command::Solo(position)))

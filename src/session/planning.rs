@@ -3,6 +3,9 @@
 use super::Session;
 use super::fusing::Refusal;
 
+/// No horizon is longer: an hour at 30 Hz.
+pub(super) const MOST_HORIZON: usize = 108_000;
+
 impl Session {
     /// Sets c, if there is a belief at the c-th image and something to predict after it.
     pub(super) fn set_context(&mut self, context: usize) -> Result<String, Refusal> {
@@ -20,7 +23,8 @@ impl Session {
         }
         self.settings.context = context;
         Ok(format!(
-            "predicts from step {context} on: {context} images seen"
+            "predicts from step {} on: {context} images seen",
+            context + 1
         ))
     }
 
@@ -36,6 +40,9 @@ impl Session {
     pub(super) fn set_horizon(&mut self, horizon: usize) -> Result<String, Refusal> {
         if horizon == 0 {
             return Err("a horizon is at least 1".to_owned());
+        }
+        if horizon > MOST_HORIZON {
+            return Err(format!("a horizon is at most {MOST_HORIZON}"));
         }
         self.settings.horizon = horizon;
         let fitting = self.rollout().horizon;

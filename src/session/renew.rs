@@ -57,7 +57,7 @@ impl Session {
         };
         *info = Arc::new(predictor.info().clone());
         self.position_weights[index] = predictor.position_weights().map(Arc::from);
-        self.predictors[index] = Arc::clone(&predictor);
+        self.shared.replace_model(index, Arc::clone(&predictor));
         self.survey_anew(index, &predictor);
         let mut successors = self
             .shared
@@ -66,7 +66,7 @@ impl Session {
             .unwrap_or_else(PoisonError::into_inner);
         successors.insert(index, predictor);
         drop(successors);
-        if index == self.target.model {
+        if index == self.target.model || Some(index) == self.other() {
             // What was wanted is wanted again.
             self.wanted = None;
             self.repair();

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::planning::MOST_HORIZON;
 use super::settings::Settings;
 use super::snapshot::ModelInfo;
 use super::state::State;
@@ -57,7 +58,8 @@ impl Session {
         self.change(|session| {
             let settings = &mut session.settings;
             settings.scope = state.scope.unwrap_or(settings.scope);
-            settings.horizon = state.horizon.unwrap_or(settings.horizon);
+            let horizon = state.horizon.unwrap_or(settings.horizon);
+            settings.horizon = horizon.min(MOST_HORIZON);
             take_bench(settings, &state);
             session.take_switches(&state, &mut complaints);
             // A wish, as the horizon is: an episode that has no room for it is shown with as much as it has.

@@ -46,7 +46,7 @@ impl Session {
             Arc::clone(&shared),
             Arc::clone(&self.shared),
             Arc::clone(&self.source),
-            self.predictors.clone(),
+            self.shared.models(),
             self.cache.clone(),
         );
         match started {
@@ -213,6 +213,8 @@ impl Session {
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .insert(model, Arc::clone(predictor));
+        // Answers on their way are the former model's.
+        survey.generation += 1;
         survey.wanted = None;
     }
 

@@ -58,11 +58,35 @@ pub struct Shared {
     pub waker: Mutex<Option<Waker>>,
     /// To the worker, before its next request: models that take the place of others.
     pub successors: Mutex<BTreeMap<usize, Arc<dyn Predictor>>>,
+    /// The session's, for the threads that compute and whoever else goes on with them.
+    models: Mutex<Vec<Arc<dyn Predictor>>>,
     /// To the session, from whoever watches its models.
     pub renewed: Mutex<BTreeMap<usize, Found>>,
 }
 
 impl Shared {
+    /// For a session of these models.
+    pub fn of(models: Vec<Arc<dyn Predictor>>) -> Self {
+        Self {
+            models: Mutex::new(models),
+            ..Self::default()
+        }
+    }
+
+    /// The models as they are now.
+    pub fn models(&self) -> Vec<Arc<dyn Predictor>> {
+        let models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        models.clone()
+    }
+
+    /// Puts another one in the place of model `index`, if there is one.
+    pub fn replace_model(&self, index: usize, model: Arc<dyn Predictor>) {
+        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(place) = models.get_mut(index) {
+            *place = model;
+        }
+    }
+
     /// Whether the worker has something to do.
     pub fn is_working(&self) -> bool {
         self.working.load(Ordering::Acquire) || self.requests.calls()

@@ -152,11 +152,16 @@ impl App {
             }
             None => Flow::Go,
         };
+        self.show_input();
+        flow
+    }
+
+    /// Shows what the next key would be read as.
+    fn show_input(&mut self) {
         let snapshot = self.session.snapshot();
         self.face.expert = self.input.focused_expert();
         self.face.prompt = self.input.hint(&snapshot);
         self.face.palette = self.input.palette(&snapshot);
-        flow
     }
 
     /// In the lattice up and down choose a set and Enter switches to it; whether the key was one of these.
@@ -287,8 +292,8 @@ impl App {
                     Pane::Experts => {
                         if let Some(expert) = expert_at(at.y - rect.y, snapshot.experts.len()) {
                             self.input.focus_expert(expert);
-                            self.face.expert = expert;
                             self.session.apply(Command::ToggleExpert(expert));
+                            self.show_input();
                         }
                     }
                     _ => {}

@@ -22,8 +22,8 @@ fn ahead(snapshot: &Snapshot) -> impl Iterator<Item = (usize, usize)> {
         .map_or(0, |episode| episode.secs.len());
     let (start, horizon) = (snapshot.start, snapshot.horizon);
     (0..=horizon)
-        .map(move |h| (h, start + h))
-        .filter(move |&(_, step)| step < steps)
+        .map(move |h| (h, start.saturating_add(h)))
+        .take_while(move |&(_, step)| step < steps)
 }
 
 /// The cursor's distance from the start, while it is within the horizon.

@@ -9,12 +9,17 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
+use ratatui::widgets::{Clear, Widget};
 
 use super::face::Face;
 use super::paint::{right, text, width};
 use super::theme::{WARNING, dim, strong};
+use super::words::broken;
 use crate::session::command::Scope;
 use crate::session::snapshot::{Badge, Snapshot};
+
+/// A message takes no more lines than these above its own.
+const MOST_ABOVE: u16 = 5;
 
 /// Draws the first line.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -104,11 +109,20 @@ pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     }
     let episode = snapshot.episode.as_deref();
     if let Some(message) = &snapshot.message {
-        let mut at = 0;
-        if message.error {
-            at = text(buf, pane, 0, 0, "! ", warning);
+        let mark = if message.error { "! " } else { "" };
+        let lines = broken(&message.text, pane.width - width(mark).min(pane.width));
+        // What does not fit on a line takes those above it: it may be what is to be copied, or to be done.
+        let rows = (lines.len() as u16).clamp(1, 1 + pane.y.min(MOST_ABOVE));
+        let pane = Rect {
+            y: pane.y + 1 - rows,
+            height: rows,
+            ..pane
+        };
+        Clear.render(pane, buf);
+        let at = text(buf, pane, 0, 0, mark, warning);
+        for (row, line) in lines.iter().enumerate() {
+            text(buf, pane, at, row as u16, line, Style::new());
         }
-        text(buf, pane, at, 0, &message.text, Style::new());
     } else if let Some(missing) = episode
         .map(|episode| &episode.missing)
         .filter(|missing| !missing.is_empty())

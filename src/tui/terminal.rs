@@ -96,6 +96,7 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
         Images::Ask if app.face.depth.has_shades() => {
             if host.tmux {
                 tmux::let_through();
+                screen.copy_through_tmux();
             }
             screen.write(&host.question())?;
             asking = Some(Asking::new(host));
@@ -209,10 +210,13 @@ fn drive<W: Write>(
 ) -> io::Result<Ended> {
     let mut changed = true;
     let mut before = Instant::now();
-    loop {
+    let mut tick = |app: &mut App| {
         let now = Instant::now();
-        changed |= app.tick(now - before);
-        before = now;
+        let since = now - std::mem::replace(&mut before, now);
+        app.tick(since)
+    };
+    loop {
+        changed |= tick(app);
         if let Some(pixels) = &mut app.face.pixels {
             changed |= pixels.receive();
         }
@@ -230,6 +234,8 @@ fn drive<W: Write>(
                 Err(_) => return Ok(Ended::Quit),
             },
         };
+        // Before what the keys begin: the wait for them is no time that it has played.
+        changed |= tick(app);
         // Everything that has come is taken in before the next drawing, so a held key leaves nothing behind; no more
         // than can wait, so that even an endless stream of it is drawn now and then.
         for wake in first.into_iter().chain(events.try_iter().take(QUEUE)) {

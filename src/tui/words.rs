@@ -22,6 +22,37 @@ pub fn wrap(sentence: &str, columns: u16) -> Vec<String> {
     lines
 }
 
+/// The same, but a word that is longer than a line begins where it stands and goes on in the next: nothing is lost.
+pub fn broken(sentence: &str, columns: u16) -> Vec<String> {
+    let columns = columns.max(1);
+    let mut lines: Vec<String> = Vec::new();
+    for word in sentence.split_whitespace() {
+        let room = lines
+            .last()
+            .map_or(0, |line| columns.saturating_sub(width(line)));
+        let wanted = if width(word) > columns {
+            2
+        } else {
+            1 + width(word)
+        };
+        let mut line = match lines.pop() {
+            Some(line) if wanted <= room => line + " ",
+            line => {
+                lines.extend(line);
+                String::new()
+            }
+        };
+        for c in word.chars() {
+            if width(&line) + width(c.encode_utf8(&mut [0; 4])) > columns {
+                lines.push(std::mem::take(&mut line));
+            }
+            line.push(c);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
 /// Writes a sentence from a row on; returns the row after it.
 pub fn sentence(buf: &mut Buffer, pane: Rect, row: u16, content: &str, style: Style) -> u16 {
     let mut row = row;
@@ -108,5 +139,13 @@ mod tests {
         let rows = legend_rows(&entries, 17);
         assert_eq!(rows.iter().map(|row| row.len()).collect::<Vec<_>>(), [2, 1]);
         assert!(legend_rows(&[], 9).is_empty());
+    }
+
+    #[test]
+    fn a_word_that_is_longer_than_a_line_goes_on_in_the_next() {
+        let lines = broken("copied: v=1;episode=ep00000;step=3", 10);
+        assert_eq!(lines, ["copied: v=", "1;episode=", "ep00000;st", "ep=3"]);
+        assert_eq!(broken("", 10), [""; 0]);
+        assert_eq!(broken("ab", 0), ["a", "b"]);
     }
 }

@@ -32,7 +32,7 @@ const ENDING: &str = if cfg!(feature = "rerun") {
 /// For the session of `opened`; `folder` is where files go. Dropped, it breaks off what is still being written.
 pub(super) fn taker(session: &mut Session, opened: &Opened, folder: PathBuf) -> TakeAlong {
     let face = session.attach(Box::new(|| {}));
-    let (dataset, models) = (Arc::clone(&opened.dataset), opened.models.clone());
+    let dataset = Arc::clone(&opened.dataset);
     let mut last: Option<Writing> = None;
     Box::new(move |shown| {
         if last.as_ref().is_some_and(Writing::goes_on) {
@@ -40,7 +40,7 @@ pub(super) fn taker(session: &mut Session, opened: &Opened, folder: PathBuf) -> 
         }
         let job = Job {
             dataset: Arc::clone(&dataset),
-            models: on_screen(shown, &models),
+            models: on_screen(shown, &face.models()),
             plan: Plan {
                 episodes: vec![shown.episode_index],
                 state: Some(State::parse(&shown.state).0),

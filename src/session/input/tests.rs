@@ -80,6 +80,16 @@ fn digits_switch_and_nine_is_the_prior() {
     assert_eq!(alphas("l9"), [1.0, 1.0, 1.0, 0.0]);
     assert_eq!(alphas("S3"), [0.0, 0.0, 1.0, 1.0]);
     assert_eq!(alphas("12 0"), [1.0; 4]);
+    let alone = snapshot("S9");
+    let why = alone
+        .message
+        .as_ref()
+        .map(|message| (message.error, &*message.text));
+    assert_eq!(
+        why,
+        Some((true, "solo is for sensors; the prior stays as it is"))
+    );
+    assert!(alone.experts.iter().all(|expert| expert.alpha == 1.0));
     let (snapshot, others, _) = press("4");
     assert_eq!(snapshot.message, None);
     let text = "there are 3 sensor experts; 9 is the prior".to_owned();

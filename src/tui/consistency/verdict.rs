@@ -10,7 +10,7 @@ use super::super::theme::{PREDICTION, dim, strong};
 use super::super::view::Pane;
 use super::super::words::sentence;
 use super::board;
-use crate::measure::calibration::{Calibration, CoveragePoint};
+use crate::measure::calibration::{Calibration, CoveragePoint, HorizonNees};
 use crate::session::snapshot::Snapshot;
 
 /// Where the two columns of numbers end.
@@ -27,9 +27,13 @@ pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face)
     let note = read.as_ref().map_or_else(
         |_| String::new(),
         |board| {
+            let damaged = !snapshot.corruptions.is_empty();
             format!(
-                "{}, {}/{} episodes",
-                board.split, board.episodes, board.total
+                "{}, {}/{} episodes{}",
+                board.split,
+                board.episodes,
+                board.total,
+                if damaged { ", none damaged" } else { "" }
             )
         },
     );
@@ -66,8 +70,12 @@ pub fn numbers(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     right(buf, inner, FILTERED, 0, "● filtered", strong());
     right(buf, inner, PREDICTED, 0, "◆ predicted", strong().patch(ink));
     let both = [board.filtered.as_ref(), board.predicted.as_ref()];
-    let last = board.by_head.last().filter(|_| board.by_head.len() > 1);
-    let nees = [board.by_head.first(), last].map(|at| at.map(|at| at.mean));
+    let first = board.by_head.first();
+    // The other numbers of the prediction are of the last horizon that every episode has.
+    let of_all =
+        |at: &&HorizonNees| at.horizon > 0 && first.is_some_and(|f| f.episodes == at.episodes);
+    let last = board.by_head.iter().rfind(of_all);
+    let nees = [first, last].map(|at| at.map(|at| at.mean));
     let rows: [(&str, [Option<String>; 2], &str); 8] = [
         (
             "holds of 95 %",

@@ -50,7 +50,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, (width, values): (usize, &[f32]), dept
             .collect(),
         signed: false,
     };
-    if depth == Depth::Plain {
+    if !depth.has_shades() {
         raster.draw(buf, pane, depth);
         return;
     }

@@ -38,11 +38,14 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     };
     let ahead = cursor_ahead(snapshot).filter(|&ahead| ahead > 0);
-    let at = ahead.map_or_else(String::new, |ahead| format!(", +{ahead}"));
+    // While the cursor moves on the images are of a step before.
+    let frames = spread.frames.as_ref().filter(|_| ahead.is_some());
+    let at = frames.and_then(|frames| frames.step.checked_sub(snapshot.start));
+    let at = at.map_or_else(String::new, |ahead| format!(", +{ahead}"));
     let note = format!("{}, seed {}{at}", spread.samples, spread.seed);
     title(buf, pane, "samples", &note, focused);
     let inner = below_title(pane);
-    let Some(frames) = &spread.frames else {
+    let Some(frames) = frames else {
         let why = if ahead.is_some() {
             "decoding…".to_owned()
         } else {

@@ -4,14 +4,15 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use crossterm::clipboard::CopyToClipboard;
-use crossterm::queue;
 use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
+use crossterm::{Command, queue};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 use ratatui::layout::Size;
 
 use crate::tui::app::App;
 use crate::tui::draw;
+use crate::tui::pixels::tmux;
 
 /// How long a frame may wait for the images that it is the first to show: half of the time between two at 18 Hz.
 const PATIENCE: Duration = Duration::from_millis(25);
@@ -19,13 +20,17 @@ const PATIENCE: Duration = Duration::from_millis(25);
 /// What is drawn on.
 pub struct Screen<W: Write> {
     terminal: Terminal<CrosstermBackend<W>>,
+    tmux: bool,
 }
 
 impl<W: Write> Screen<W> {
     /// The whole terminal.
     pub fn whole(out: W) -> io::Result<Self> {
         let terminal = Terminal::new(CrosstermBackend::new(out))?;
-        Ok(Self { terminal })
+        Ok(Self {
+            terminal,
+            tmux: false,
+        })
     }
 
     /// So many cells of something that is no terminal.
@@ -34,7 +39,15 @@ impl<W: Write> Screen<W> {
         let viewport = ratatui::Viewport::Fixed((ratatui::layout::Position::ORIGIN, size).into());
         let options = ratatui::TerminalOptions { viewport };
         let terminal = Terminal::with_options(CrosstermBackend::new(out), options)?;
-        Ok(Self { terminal })
+        Ok(Self {
+            terminal,
+            tmux: false,
+        })
+    }
+
+    /// Has what is copied also go past tmux, which as it is set by default keeps it to itself.
+    pub fn copy_through_tmux(&mut self) {
+        self.tmux = true;
     }
 
     /// Its cells.
@@ -62,7 +75,14 @@ impl<W: Write> Screen<W> {
         let out = self.terminal.backend_mut();
         queue!(out, EndSynchronizedUpdate)?;
         if let Some(state) = app.to_copy.take() {
-            queue!(out, CopyToClipboard::to_clipboard_from(state))?;
+            let mut sequence = String::new();
+            // Writing to a string cannot fail.
+            let _ = CopyToClipboard::to_clipboard_from(state).write_ansi(&mut sequence);
+            let mut bytes = sequence.clone().into_bytes();
+            if self.tmux {
+                tmux::pass(&mut bytes, sequence.as_bytes(), true);
+            }
+            out.write_all(&bytes)?;
         }
         out.flush()
     }
