@@ -134,7 +134,7 @@ export class App {
     this.#charts.update();
     this.#scene.update(changes.scene, changes.reset);
     this.#timeline.update();
-    this.#notices.update();
+    this.#notices.update(changes.reset);
     if (changes.notices) this.#notices.updateNotices();
     const { answer } = client;
     this.#palette.update(answer?.palette ?? null);

@@ -2,30 +2,35 @@
 import * as names from "./names";
 import { namesOf } from "./keys";
 import { type FaceAnswer, type KeyLine, type Meta, NO_ANSWER, parsed } from "./meta";
-import { type Outgoing, guiUpdate } from "./protocol/outgoing";
+import { type Letter, type Outgoing, guiUpdate } from "./protocol/outgoing";
 import type { GuiElement } from "./state/gui";
 import { Store } from "./state/store";
 
 /** A control that is dragged sends at most so often; the last value always goes. */
 const DRAG_MS = 16;
+/** The server's line holds no more than so many characters. */
+const LONGEST_LINE = 4096;
 
 export class Client {
   readonly store = new Store();
-  readonly #send: (message: Outgoing) => boolean;
+  readonly #post: (letter: Letter) => boolean;
   readonly #waiting = new Map<string, unknown>();
+  /** Whether one of them is another value than was shown; the server says nothing to one that is not. */
+  #differs = false;
   #timer: ReturnType<typeof setTimeout> | undefined;
   #counter = 0;
   #sentAt = 0;
   readonly #parsed = new Map<string, { text: unknown; value: unknown }>();
 
-  constructor(send: (message: Outgoing) => boolean) {
-    this.#send = send;
+  constructor(post: (letter: Letter) => boolean) {
+    this.#post = post;
   }
 
   /** A new connection: the server says everything again, and counts keys from the first one. */
   opened(): void {
     this.store.reset();
     this.#waiting.clear();
+    this.#differs = false;
     this.#counter = 0;
   }
 
@@ -54,13 +59,14 @@ export class Client {
     return typeof value === "string" ? value : "";
   }
 
-  /** The counter of the last key or line; its answer carries it. */
+  /** The counter of the last key or line that was sent; its answer carries it. */
   get lastKey(): number {
     return this.#counter;
   }
 
   /** A value for a control: shown at once, sent at once unless one was sent just now. */
   choose(uuid: string, value: unknown): void {
+    this.#differs ||= this.element(uuid)?.value !== value;
     this.store.choose(uuid, value);
     this.#waiting.delete(uuid);
     this.#waiting.set(uuid, value);
@@ -75,23 +81,21 @@ export class Client {
     this.#send(guiUpdate(uuid, true));
   }
 
-  /** A key by name. What was dragged before goes before it. */
-  key(name: string): void {
-    this.flush();
-    this.#counter += 1;
-    this.#send(guiUpdate(names.KEY, `${name}#${this.#counter}`));
+  /** A key by name; whether it was sent. What was dragged before goes before it. */
+  key(name: string): boolean {
+    return this.#numbered(names.KEY, name);
   }
 
   /** Characters, as if typed. */
   type(text: string): void {
-    namesOf(text).forEach((name) => this.key(name));
+    namesOf(text)
+      .slice(0, LONGEST_LINE)
+      .forEach((name) => this.key(name));
   }
 
   /** A whole line, as if typed after `:` and ended. */
   line(text: string): void {
-    this.flush();
-    this.#counter += 1;
-    this.#send(guiUpdate(names.LINE, `${text}#${this.#counter}`));
+    this.#numbered(names.LINE, text);
   }
 
   restore(state: string): void {
@@ -121,9 +125,22 @@ export class Client {
   flush(): void {
     clearTimeout(this.#timer);
     this.#timer = undefined;
-    for (const [uuid, value] of this.#waiting) this.#send(guiUpdate(uuid, value));
+    for (const [uuid, value] of this.#waiting) this.#send(guiUpdate(uuid, value), this.#differs);
     if (this.#waiting.size > 0) this.#sentAt = performance.now();
     this.#waiting.clear();
+    this.#differs = false;
+  }
+
+  /** Only what was sent is counted: nothing else will be answered. */
+  #numbered(uuid: string, text: string): boolean {
+    this.flush();
+    const sent = this.#send(guiUpdate(uuid, `${text}#${this.#counter + 1}`), true);
+    if (sent) this.#counter += 1;
+    return sent;
+  }
+
+  #send(message: Outgoing, answered = false): boolean {
+    return this.#post({ message, answered });
   }
 
   /** Parsed once for each text. */

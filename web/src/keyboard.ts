@@ -36,17 +36,21 @@ export class Keyboard {
     // Keys may be typed faster than the answers come; until then the session is asked.
     const waiting = (answer?.n ?? 0) < lastKey;
     const mode = answer?.mode === true;
-    if (mode || waiting) {
-      // In a line or a mode nearly everything means something, but copying and the like stay the browser's.
-      if (/^<c-[^kp]>$/.test(name) || (!mode && /tab>$/.test(name))) return;
-      event.preventDefault();
-      return this.#client.key(name);
-    }
     const line = keys.find((each) => each.keys.includes(name));
+    if (mode || waiting) {
+      // In a line or a mode nearly everything means something, but reloading, copying and the like stay the browser's.
+      if ((line === undefined && /^<(c-.+|f\d+)>$/.test(name)) || (!mode && /tab>$/.test(name))) return;
+      return this.#send(event, name);
+    }
     if (line === undefined || name === "<tab>" || name === "<s-tab>" || needed(document.activeElement, name)) return;
+    if (line.face === null) return this.#send(event, name);
     event.preventDefault();
-    if (line.face === null) this.#client.key(name);
-    else this.#face(line.face);
+    this.#face(line.face);
+  }
+
+  /** A key that cannot be sent is left to the browser. */
+  #send(event: KeyboardEvent, name: string): void {
+    if (this.#client.key(name)) event.preventDefault();
   }
 }
 

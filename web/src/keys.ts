@@ -36,9 +36,10 @@ export function keyName(pressed: Pressed): string | undefined {
   if (isComposing || key === "Dead" || key === "Unidentified") return undefined;
   const character = [...key].length === 1 && key !== " ";
   if (!pressed.altGraph) {
-    // The command key stands for control, so that the palette opens where one expects it.
+    // The command key stands for control, so that the palette opens where one expects it. With shift they are the
+    // browser's: its tools, a private window.
     if (pressed.ctrlKey || pressed.metaKey) {
-      return character && !pressed.altKey ? `<c-${key.toLowerCase()}>` : undefined;
+      return character && !pressed.altKey && !shiftKey ? `<c-${key.toLowerCase()}>` : undefined;
     }
     if (pressed.altKey) return undefined;
   }

@@ -1,4 +1,5 @@
 /** The page's own address: it carries the state, and no token. */
+import { serverHost } from "./protocol/address";
 
 const TOKEN = "poescope-token";
 /** Browsers refuse pages that change their address too often. */
@@ -40,9 +41,11 @@ export function stateOf(search: string): string | undefined {
 export function keepToken(page: URL): URL {
   const url = new URL(page.href);
   const given = url.searchParams.get("token");
+  // Of this server only: a link may name another one, which must not get it.
+  const name = `${TOKEN}@${serverHost(page)}`;
   try {
-    if (given !== null) sessionStorage.setItem(TOKEN, given);
-    const kept = given ?? sessionStorage.getItem(TOKEN);
+    if (given !== null) sessionStorage.setItem(name, given);
+    const kept = given ?? sessionStorage.getItem(name);
     if (kept !== null) url.searchParams.set("token", kept);
   } catch {
     // A browser that keeps nothing: it stays in this page's own copy.

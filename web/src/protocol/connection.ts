@@ -2,7 +2,8 @@
 import { backoffMs } from "./backoff";
 import { ProtocolError } from "./error";
 import { type Batch, decodeFrame } from "./frame";
-import { encodeMessage, type Outgoing } from "./outgoing";
+import { encodeMessage, type Letter } from "./outgoing";
+import { Pace } from "./pace";
 
 export const SUBPROTOCOL = "viser-v1.1.1";
 
@@ -10,6 +11,8 @@ export const SUBPROTOCOL = "viser-v1.1.1";
 const OPEN_MS = 5000;
 /** A connection that held so long counts as good, and the next wait is the shortest again. */
 const GOOD_MS = 3000;
+/** A connection may break without a word, as in sleep; then a server that should answer is silent for so long. */
+const ANSWER_MS = 8000;
 
 export type Status =
   | { kind: "connecting"; attempt: number }
@@ -30,6 +33,9 @@ export class Connection {
   readonly #listener: Listener;
   #socket: WebSocket | undefined;
   #timer: ReturnType<typeof setTimeout> | undefined;
+  readonly #pace = new Pace();
+  /** Runs from what is to be answered to the next thing that the server says. */
+  #patience: ReturnType<typeof setTimeout> | undefined;
   #failures = 0;
   #openedAtMs = 0;
   readonly #isThere: () => Promise<boolean>;
@@ -46,7 +52,7 @@ export class Connection {
   }
 
   connect(): void {
-    clearTimeout(this.#timer);
+    this.#stop();
     this.#socket?.close();
     this.#fault = undefined;
     this.#listener.status({ kind: "connecting", attempt: this.#failures + 1 });
@@ -59,14 +65,39 @@ export class Connection {
     }, OPEN_MS);
     socket.addEventListener("open", () => this.#current(socket, () => this.#opened()));
     socket.addEventListener("message", (event) => this.#current(socket, () => this.#received(event.data)));
-    socket.addEventListener("close", (event) => this.#current(socket, () => this.#closed(event)));
+    socket.addEventListener("close", (event) => this.#current(socket, () => this.#closed(event.reason)));
   }
 
-  /** Whether it was handed to the socket; what is said while there is none is dropped, the state comes from the server. */
-  send(message: Outgoing): boolean {
-    if (this.#socket?.readyState !== WebSocket.OPEN) return false;
-    this.#socket.send(encodeMessage(message));
+  /** Whether there is a socket for it; what is said while there is none is dropped, the state comes from the server. */
+  send({ message, answered }: Letter): boolean {
+    const socket = this.#socket;
+    if (socket?.readyState !== WebSocket.OPEN) return false;
+    this.#pace.push(() => {
+      socket.send(encodeMessage(message));
+      if (answered) this.#patience ??= setTimeout(() => this.#giveUp(), ANSWER_MS);
+    });
     return true;
+  }
+
+  /** Ends all that was begun for one socket. */
+  #stop(): void {
+    clearTimeout(this.#timer);
+    this.#hear();
+    this.#pace.clear();
+  }
+
+  #hear(): void {
+    clearTimeout(this.#patience);
+    this.#patience = undefined;
+  }
+
+  /** Does not wait for the close event, which a browser holds back until the other side has agreed. */
+  #giveUp(): void {
+    const socket = this.#socket;
+    this.#socket = undefined;
+    socket?.close();
+    this.#fault = `no answer for ${ANSWER_MS / 1000} s`;
+    this.#closed("");
   }
 
   /** Events of a socket that was replaced mean nothing any more. */
@@ -83,6 +114,7 @@ export class Connection {
   }
 
   #received(data: unknown): void {
+    this.#hear();
     try {
       if (!(data instanceof ArrayBuffer)) throw new ProtocolError("a text message; all are binary");
       this.#listener.received(decodeFrame(data));
@@ -108,13 +140,13 @@ export class Connection {
     return there ? "refused: the link may lack its token, or there are too many viewers" : "the server does not answer";
   }
 
-  #closed(event: CloseEvent): void {
-    clearTimeout(this.#timer);
+  #closed(theirs: string): void {
+    this.#stop();
     const held = this.#openedAtMs > 0 && performance.now() - this.#openedAtMs > GOOD_MS;
     this.#openedAtMs = 0;
     this.#failures = held ? 1 : this.#failures + 1;
     const wait = backoffMs(this.#failures, Math.random());
-    const reason = this.#fault ?? (event.reason || this.#whyRefused());
+    const reason = this.#fault ?? (theirs || this.#whyRefused());
     this.#listener.status({ kind: "lost", reason, retryAtMs: performance.now() + wait });
     this.#timer = setTimeout(() => this.connect(), wait);
   }

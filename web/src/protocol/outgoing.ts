@@ -26,6 +26,13 @@ export interface SceneNodeClick {
 
 export type Outgoing = GuiUpdate | SceneNodeClick;
 
+/** A message to send. */
+export interface Letter {
+  message: Outgoing;
+  /** The server always says something to it, so that silence means that it is gone. */
+  answered: boolean;
+}
+
 export function encodeMessage(message: Outgoing): Uint8Array<ArrayBuffer> {
   return encode(message);
 }

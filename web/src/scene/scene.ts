@@ -186,7 +186,8 @@ export class SceneView {
   #empty(shown: Shown): void {
     if (shown.content === undefined) return;
     shown.holder.remove(shown.content);
-    this.#old.push(shown.content);
+    if (this.#renderer === undefined) dispose(shown.content);
+    else this.#old.push(shown.content);
     shown.content = undefined;
   }
 

@@ -107,8 +107,11 @@ function noteOf(name: FrameName, meta: Meta, label: string): string {
       return [ahead(meta.step, meta.start, meta.horizon), withUnit(meta.psnr_db?.prediction, 1, "dB").replace("–", "")]
         .join(" ")
         .trim();
-    case "error":
-      return `${/±\s*[\d.]+/.exec(label)?.[0] ?? ""} ${meta.error_of}`.trim();
+    case "error": {
+      // `error of belief: blue −0.5, orange +0.5`
+      const range = /\+([\d.]+)/.exec(label)?.[1];
+      return `${range === undefined ? "" : `±${range}`} ${meta.error_of}`.trim();
+    }
     default:
       return "";
   }

@@ -41,7 +41,9 @@ export class Notices {
     this.#showLine();
   }
 
-  update(): void {
+  /** `reset`: a new connection, whose keys are counted from the first one again. */
+  update(reset: boolean): void {
+    if (reset) this.#explained = 0;
     const { meta, answer } = this.#client;
     const message = meta?.message ?? null;
     const key = message === null ? "" : message.text;

@@ -96,7 +96,7 @@ export class Palette {
   /** Text that came without keys: a paste, a phone's keyboard. */
   #typed(event: InputEvent): void {
     event.preventDefault();
-    if (event.inputType === "deleteContentBackward") return this.#client.key("<backspace>");
+    if (event.inputType === "deleteContentBackward") return void this.#client.key("<backspace>");
     this.#client.type(event.data ?? event.dataTransfer?.getData("text/plain") ?? "");
   }
 

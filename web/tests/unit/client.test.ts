@@ -5,6 +5,8 @@ import { META, STATE } from "../../src/names";
 import type { GuiUpdate, Outgoing } from "../../src/protocol/outgoing";
 
 let sent: Outgoing[];
+let answered: boolean[];
+let open: boolean;
 let client: Client;
 const said = () => sent.map((message) => [(message as GuiUpdate).uuid, (message as GuiUpdate).updates.value]);
 const text = (uuid: string, value: string) => ({
@@ -17,8 +19,13 @@ const text = (uuid: string, value: string) => ({
 
 beforeEach(() => {
   vi.useFakeTimers();
-  sent = [];
-  client = new Client((message) => sent.push(message) > 0);
+  [sent, answered, open] = [[], [], true];
+  client = new Client((letter) => {
+    if (!open) return false;
+    sent.push(letter.message);
+    answered.push(letter.answered);
+    return true;
+  });
 });
 afterEach(() => vi.useRealTimers());
 
@@ -63,6 +70,27 @@ describe("what is said to the server", () => {
       ["poescope-key", "b#4"],
       ["poescope-line", "context 5#5"],
     ]);
+  });
+
+  it("counts no key that was not sent", () => {
+    client.key("l");
+    open = false;
+    expect(client.key("l")).toBe(false);
+    expect(client.lastKey).toBe(1);
+    open = true;
+    client.key("h");
+    expect(said().at(-1)).toEqual(["poescope-key", "h#2"]);
+  });
+
+  it("is answered if it is a key, or a value that is another one", () => {
+    client.store.apply([text("a", "now")]);
+    client.key("l");
+    client.press("play");
+    for (const value of ["then", "then"]) {
+      vi.advanceTimersByTime(1000);
+      client.choose("a", value);
+    }
+    expect(answered).toEqual([true, false, true, false]);
   });
 });
 

@@ -1,7 +1,8 @@
+import { decode } from "@msgpack/msgpack";
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 import { Connection, SUBPROTOCOL, type Status } from "../../src/protocol/connection";
 import type { Batch } from "../../src/protocol/frame";
-import { guiUpdate } from "../../src/protocol/outgoing";
+import { type GuiUpdate, guiUpdate } from "../../src/protocol/outgoing";
 import { frame } from "./golden";
 
 /** A socket that does what the test says. */
@@ -43,6 +44,7 @@ let opened: number;
 let there: boolean;
 let connection: Connection;
 const last = () => FakeSocket.made.at(-1) as FakeSocket;
+const letter = (answered = false) => ({ message: guiUpdate("a", 1), answered });
 const lost = () => statuses.at(-1) as Extract<Status, { kind: "lost" }>;
 
 beforeEach(() => {
@@ -71,11 +73,11 @@ afterEach(() => {
 describe("a connection", () => {
   it("asks for the protocol's version, hands on what it reads, and sends", () => {
     expect(last().protocols).toEqual([SUBPROTOCOL]);
-    expect(connection.send(guiUpdate("a", 1))).toBe(false);
+    expect(connection.send(letter())).toBe(false);
     last().open();
     last().receive(frame("s2c_000"));
     expect([opened, batches[0]?.messages.length]).toEqual([1, 10]);
-    expect(connection.send(guiUpdate("a", 1))).toBe(true);
+    expect(connection.send(letter())).toBe(true);
     expect(last().sent.length).toBe(1);
   });
 
@@ -127,6 +129,44 @@ describe("a connection", () => {
     await vi.advanceTimersToNextTimerAsync();
     last().lose();
     expect(lost().reason).toMatch(/refused.*token/);
+  });
+
+  it("says all of much in order, and never more than the server hears", () => {
+    last().open();
+    for (let i = 0; i < 4096; i += 1) connection.send({ message: guiUpdate("a", i), answered: false });
+    expect(last().sent.length).toBe(200);
+    vi.advanceTimersByTime(1000);
+    expect(last().sent.length).toBeLessThanOrEqual(300);
+    vi.advanceTimersByTime(40_000);
+    const values = last().sent.map((bytes) => (decode(bytes as Uint8Array) as GuiUpdate).updates.value);
+    expect(values).toEqual(Array.from({ length: 4096 }, (_, i) => i));
+  });
+
+  it("says nothing of the rest to the next socket", () => {
+    last().open();
+    for (let i = 0; i < 300; i += 1) connection.send(letter());
+    last().lose();
+    vi.advanceTimersByTime(500);
+    last().open();
+    vi.advanceTimersByTime(2000);
+    expect(last().sent).toEqual([]);
+  });
+
+  it("gives up a server that does not answer, without waiting for the socket's end", () => {
+    last().open();
+    connection.send(letter());
+    vi.advanceTimersByTime(60_000);
+    connection.send(letter(true));
+    vi.advanceTimersByTime(5000);
+    last().receive(frame("s2c_000"));
+    vi.advanceTimersByTime(60_000);
+    expect(statuses.at(-1)).toEqual({ kind: "open" });
+    connection.send(letter(true));
+    vi.spyOn(last(), "close").mockImplementation(() => {});
+    vi.advanceTimersByTime(8000);
+    expect(lost().reason).toBe("no answer for 8 s");
+    vi.advanceTimersByTime(500);
+    expect(FakeSocket.made.length).toBe(2);
   });
 
   it("does not listen to a socket that was replaced", () => {

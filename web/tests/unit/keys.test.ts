@@ -40,6 +40,7 @@ describe("names of keys", () => {
       press("l", { isComposing: true }),
     ]).toEqual([undefined, undefined, undefined, undefined]);
     expect(press("ArrowRight", { ctrlKey: true })).toBeUndefined();
+    expect(press("K", { ctrlKey: true, shiftKey: true })).toBeUndefined();
   });
 
   it("come one for each character of a text, and none for what is no text", () => {

@@ -1,7 +1,7 @@
-import { describe, expect, it } from "vitest";
+import { afterEach, describe, expect, it, vi } from "vitest";
 import { websocketUrl } from "../../src/protocol/address";
 import { backoffMs } from "../../src/protocol/backoff";
-import { stateOf, urlOfState } from "../../src/url";
+import { keepToken, stateOf, urlOfState } from "../../src/url";
 
 const page = (text: string) => new URL(text);
 
@@ -17,6 +17,33 @@ describe("the server's address", () => {
 
   it("may be another one", () => {
     expect(websocketUrl(page("http://127.0.0.1:5173/?websocket=ws://127.0.0.1:9000"))).toBe("ws://127.0.0.1:9000/");
+  });
+
+  it("is the page's own where the other one is no websocket's", () => {
+    for (const other of ["foo", "", "javascript:1", "//h"])
+      expect(websocketUrl(page(`http://127.0.0.1:8080/?websocket=${other}`))).toBe("ws://127.0.0.1:8080/");
+  });
+});
+
+describe("the token", () => {
+  afterEach(() => vi.unstubAllGlobals());
+
+  it("is kept for the server that it was given for, and for no other", () => {
+    const kept = new Map<string, string>();
+    vi.stubGlobal("sessionStorage", {
+      getItem: (name: string) => kept.get(name) ?? null,
+      setItem: (name: string, value: string) => kept.set(name, value),
+    });
+    const asked = (text: string) => websocketUrl(keepToken(page(text)));
+    expect(asked("http://h:1/?token=a")).toBe("ws://h:1/?token=a");
+    expect(asked("http://h:1/")).toBe("ws://h:1/?token=a");
+    expect(asked("http://h:1/?websocket=ws://h:1/x")).toBe("ws://h:1/x?token=a");
+    expect(asked("http://h:1/?websocket=foo")).toBe("ws://h:1/?token=a");
+    for (const other of ["wss://evil/", "ws://h:2/", "ws://h:1@evil/"])
+      expect(asked(`http://h:1/?websocket=${other}`)).not.toContain("token");
+    expect(asked("http://h:1/?websocket=ws://h:2/&token=b")).toBe("ws://h:2/?token=b");
+    expect(asked("http://h:1/?websocket=ws://h:2/")).toBe("ws://h:2/?token=b");
+    expect(asked("http://h:1/")).toBe("ws://h:1/?token=a");
   });
 });
 
