@@ -129,7 +129,7 @@ pub trait Sink {
 #[derive(Debug, Error)]
 pub enum ExportError {
     /// There is a file already.
-    #[error("{} exists; add --force to replace it, or choose another --out", .0.display())]
+    #[error("{} exists; add --force to replace it, or choose another name", .0.display())]
     Exists(PathBuf),
     /// The name cannot be that of a file.
     #[error("{}: {what}", path.display())]

@@ -41,6 +41,9 @@ pub struct SimulateArgs {
     /// The dataset to write
     #[arg(long)]
     pub out: PathBuf,
+    /// Replace a file that is there
+    #[arg(long)]
+    pub force: bool,
     /// Split the episodes are marked with
     #[arg(long, value_parser = parse_split)]
     pub split: Option<Split>,

@@ -26,10 +26,10 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         );
     };
     let state = args.state.as_deref().map(read).transpose()?;
-    if format == ExportFormat::Png && args.figure == Figure::View {
-        return view::run(args);
-    }
     let stop = super::stop_on_signals()?;
+    if format == ExportFormat::Png && args.figure == Figure::View {
+        return view::run(args, &stop);
+    }
     let folders = open::folders(&args.model, args.data.as_ref())?;
     let Opened { dataset, models } =
         open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
@@ -39,17 +39,17 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     {
         bail!("--state: no model named {name:?} is loaded; add it with --model FOLDER");
     }
+    let mut session = Session::new(Arc::clone(&dataset) as _, models.clone());
     let plan = Plan {
-        episodes: choose::episodes(&dataset, args, state.as_ref(), || {
+        episodes: choose::episodes(&dataset, &session, args, state.as_ref(), || {
             open::split_seed(&folders[0])
         })?,
         split: args.split,
         steps: choose::steps(args, state.as_ref()),
         state,
     };
-    // Before anything is computed: an --out that cannot be written should not cost an hour.
+    // Before the work begins: an --out that cannot be written should not cost an hour.
     let mut sink = sink::sink(format, args, &dataset)?;
-    let mut session = Session::new(Arc::clone(&dataset) as _, models.clone());
     let mut progress = Progress::new(plan.episodes.len(), stop);
     let source = Source {
         episodes: dataset.as_ref(),

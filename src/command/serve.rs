@@ -15,7 +15,6 @@ use super::view::{self, Opening, cache, follow};
 use crate::cli::{ServeArgs, ViewArgs};
 use crate::session::Session;
 use crate::session::command::Command;
-use crate::session::snapshot::Message;
 use crate::web::assets::Assets;
 use crate::web::server::{Options, Server};
 
@@ -75,7 +74,7 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Lets browsers look at a session that the terminal owns.
+/// Lets browsers look at a session that the terminal owns; who does is to say where.
 pub fn attach(
     session: &mut Session,
     address: SocketAddr,
@@ -86,12 +85,7 @@ pub fn attach(
         read_only,
         assets: Assets::built_in(),
     };
-    let server = Server::start(session, options).with_context(|| cannot(address))?;
-    session.say(Message {
-        error: false,
-        text: format!("also at {}", server.url()),
-    });
-    Ok(server)
+    Server::start(session, options).with_context(|| cannot(address))
 }
 
 fn cannot(address: SocketAddr) -> String {
@@ -100,17 +94,15 @@ fn cannot(address: SocketAddr) -> String {
 
 /// Where it is to be found.
 fn told(server: &Server) -> String {
-    let port = server.address().port();
-    let url = server.url();
-    let mut told = format!(
-        "{url}\nfrom another machine: ssh -L {port}:127.0.0.1:{port} THIS_HOST, then http://127.0.0.1:{port}/\n"
-    );
-    if let Some(token) = server.token() {
-        told = format!(
-            "{url}\nfrom another machine: http://THIS_HOST:{port}/?token={token}\nor: ssh -L {port}:127.0.0.1:{port} THIS_HOST, then the first address\n"
-        );
+    let (url, near) = (server.url(), server.near());
+    let port = near.port();
+    let tunnel = format!("ssh -L {port}:{near} THIS_HOST, then http://127.0.0.1:{port}/");
+    match server.token() {
+        None => format!("{url}\nfrom another machine: {tunnel}\n"),
+        Some(token) => format!(
+            "{url}\nfrom another machine: http://THIS_HOST:{port}/?token={token}\nor: {tunnel}?token={token}\n"
+        ),
     }
-    told
 }
 
 /// Passes the first signal on.

@@ -1,14 +1,17 @@
 //! `poescope simulate`: records planar pushes in simulation as a dataset.
 
-use anyhow::Context;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-use super::say;
+use super::{say, stop_on_signals};
 use crate::{
     cli::SimulateArgs,
     data::DatasetWriter,
     episode::Recording,
+    export::{ExportError, output::Output},
     sim::{self, Motion, Motions, Params},
 };
 
@@ -19,15 +22,43 @@ const CHUNK_PER_THREAD: usize = 8;
 
 /// Runs it.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let mut writer = DatasetWriter::create(&args.out)?;
-    let motions = record_all(args, &mut |recording| Ok(writer.write(recording)?))?;
+    if args.sheet.as_ref() == Some(&args.out) {
+        bail!("--sheet: name another file than --out");
+    }
+    let stop = stop_on_signals()?;
+    // Before anything is computed: what cannot be written should not cost an hour.
+    let out = Output::create(&args.out, args.force)?;
+    let sheet = args.sheet.as_deref();
+    let sheet = sheet.map(|path| Output::create(path, args.force));
+    let sheet = sheet.transpose().context("--sheet")?;
+    let mut writer = DatasetWriter::create(out.partial())?;
+    let mut rows = Vec::new();
+    let motions = record_all(args, &stop, &mut |recording| {
+        if sheet.is_some() && rows.len() < SHEET_ROWS {
+            rows.push(recording.clone());
+        }
+        Ok(writer.write(recording)?)
+    })?;
     writer.finish()?;
+    out.commit()?;
+    if let Some(sheet) = sheet {
+        save_sheet(&rows, sheet)?;
+    }
     say(&format!("{motions}\n"))
 }
 
-/// Simulates all episodes and hands them to `sink` in the order of their index, whatever the threads.
+fn save_sheet(rows: &[Recording], mut output: Output) -> anyhow::Result<()> {
+    let name = output.path().display().to_string();
+    sim::sheet(rows)
+        .write_to(&mut output, image::ImageFormat::Png)
+        .with_context(|| format!("writing the contact sheet {name}"))?;
+    Ok(output.commit()?)
+}
+
+/// Simulates all episodes and hands them to `sink` in the order of their index, whatever the threads, until `stop`.
 fn record_all(
     args: &SimulateArgs,
+    stop: &AtomicBool,
     sink: &mut dyn FnMut(&Recording) -> anyhow::Result<()>,
 ) -> anyhow::Result<Motions> {
     let params = Params {
@@ -45,7 +76,6 @@ fn record_all(
         .context("starting the worker threads")?;
 
     let mut motions = Motions::default();
-    let mut sheet_rows = Vec::new();
     let progress = progress_bar(args.episodes);
     let chunk = CHUNK_PER_THREAD * pool.current_num_threads();
     for first in (0..args.episodes).step_by(chunk) {
@@ -57,21 +87,16 @@ fn record_all(
                 .inspect(|_| progress.inc(1))
                 .collect()
         });
+        if stop.load(Ordering::Relaxed) {
+            return Err(ExportError::Stopped.into());
+        }
         for mut recording in recordings {
             recording.meta.split = args.split;
             motions.extend(Motion::of(&recording));
             sink(&recording)?;
-            if args.sheet.is_some() && sheet_rows.len() < SHEET_ROWS {
-                sheet_rows.push(recording);
-            }
         }
     }
     progress.finish_and_clear();
-    if let Some(path) = &args.sheet {
-        sim::sheet(&sheet_rows)
-            .save_with_format(path, image::ImageFormat::Png)
-            .with_context(|| format!("writing the contact sheet {}", path.display()))?;
-    }
     Ok(motions)
 }
 
@@ -95,6 +120,7 @@ mod tests {
                 episodes: 19,
                 seed: 4,
                 out: "unused.mcap".into(),
+                force: false,
                 split: Some(Split::Val),
                 steps: 2,
                 window: 4,
@@ -108,7 +134,8 @@ mod tests {
                 recordings.push(recording.clone());
                 Ok(())
             };
-            record_all(&args, &mut keep).expect("nothing can fail without a file");
+            let stop = AtomicBool::new(false);
+            record_all(&args, &stop, &mut keep).expect("nothing can fail without a file");
             recordings
         };
         let recordings = record(1);

@@ -23,6 +23,7 @@ use crate::cli::{Colors, ImageProtocol, ViewArgs};
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::keys::{Key, parse_script};
+use crate::session::snapshot::Message;
 use crate::tui::app::{App, Flow};
 use crate::tui::face::Face;
 use crate::tui::terminal::{self, Ended, Images};
@@ -67,6 +68,10 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
     if let Some(state) = args.state {
         app.session.apply(Command::Restore(state));
+        if args.serve.is_some() {
+            // It is answered once its episode is there, and then it must not take the place of the address.
+            wait(&mut app)?;
+        }
     }
     if send(&mut app, &keys)? == Flow::Quit {
         return Ok(());
@@ -98,8 +103,11 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     let server = args
         .serve
         .map(|address| serve::attach(&mut app.session, address, args.read_only));
-    let _server = server.transpose()?;
+    let server = server.transpose()?;
     let _stream = stream(&mut app.session, &opened, args.rerun.as_deref())?;
+    if let Some(server) = &server {
+        announce(&mut app.session, &server.url(), args.rerun.as_deref());
+    }
     let folder = std::env::current_dir().unwrap_or_default();
     app.take_along = Some(take_along::taker(&mut app.session, &opened, folder));
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
@@ -113,6 +121,17 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
             signal_hook::low_level::emulate_default_handler(signal).context("ending on a signal")
         }
     }
+}
+
+/// Says where browsers may join: together with the stream, whose own message would take its place, and on standard
+/// error, where it can be read again once the terminal is given back.
+fn announce(session: &mut Session, url: &str, rerun: Option<&str>) {
+    eprintln!("poescope: browsers may join at {url}");
+    let stream = rerun.map_or_else(String::new, |to| format!("; streaming to Rerun at {to}"));
+    session.say(Message {
+        error: false,
+        text: format!("also at {url}{stream}"),
+    });
 }
 
 /// A session that was opened.
@@ -163,7 +182,7 @@ pub(super) fn stream(_: &mut Session, _: &Opened, url: Option<&str>) -> anyhow::
 }
 
 /// Presses the keys one after the other, each once what the one before it asked for has been computed.
-pub(super) fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
+fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
     for key in keys {
         wait(app)?;
         if app.press(key) == Flow::Quit {
@@ -173,7 +192,7 @@ pub(super) fn send(app: &mut App, keys: &[Key]) -> anyhow::Result<Flow> {
     Ok(Flow::Go)
 }
 
-pub(super) fn wait(app: &mut App) -> anyhow::Result<()> {
+fn wait(app: &mut App) -> anyhow::Result<()> {
     loop {
         let scored = app.session.surveyed();
         if app.session.wait_idle(PATIENCE) {

@@ -22,9 +22,17 @@ pub struct Tables {
     experts: Option<Vec<Expert>>,
 }
 
-/// The file of episodes beside the one of steps: `a.csv` has `a.episodes.csv`.
+/// The file of episodes beside the one of steps: `a.csv` has `a.episodes.csv`, and `run.v1` has `run.v1.episodes.csv`.
 pub fn episodes_path(steps: &Path) -> PathBuf {
-    steps.with_extension("episodes.csv")
+    let ending = steps.extension().unwrap_or_default();
+    let name = if ending.eq_ignore_ascii_case("csv") {
+        steps.file_stem()
+    } else {
+        steps.file_name()
+    };
+    let mut name = name.unwrap_or_default().to_owned();
+    name.push(".episodes.csv");
+    steps.with_file_name(name)
 }
 
 impl Tables {

@@ -154,9 +154,8 @@ fn shown(
 
 /// A state without what the export itself decides: where it is, and what only a face shows.
 fn settings_of(state: &State, session: &Session, episode: usize) -> State {
-    let snapshot = session.snapshot();
-    let row = snapshot.table.rows.get(episode);
-    let is_own = state.episode.is_none() || row.map(|row| &row.id) == state.episode.as_ref();
+    let own = session.episode_key(episode);
+    let is_own = state.episode.is_none() || state.episode.as_deref() == own;
     State {
         episode: None,
         step: None,

@@ -30,16 +30,16 @@ impl Output {
         };
         match path.symlink_metadata() {
             Ok(found) if found.is_dir() => {
-                return Err(refused("this is a folder; name a file with --out"));
+                return Err(refused("this is a folder; name a file"));
             }
             Ok(found) if !found.is_file() && !found.is_symlink() => {
-                return Err(refused("this is no regular file; name one with --out"));
+                return Err(refused("this is no regular file; name one"));
             }
             Ok(_) if !force => return Err(ExportError::Exists(path.to_owned())),
             _ => {}
         }
         let Some(name) = path.file_name() else {
-            return Err(refused("this is no name of a file; name one with --out"));
+            return Err(refused("this is no name of a file; name one"));
         };
         let folder = folder(path);
         if !folder.is_dir() {

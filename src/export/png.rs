@@ -60,6 +60,15 @@ impl Picture {
             provenance: None,
         })
     }
+
+    fn too_large(&self, episodes: usize) -> ExportError {
+        ExportError::Format {
+            path: self.output.path().to_owned(),
+            what: format!(
+                "{episodes} episode(s) make a picture of more than 100 megapixels; choose fewer with --episode, fewer steps with --every, a smaller --zoom, or --figure sheet"
+            ),
+        }
+    }
 }
 
 impl Figure {
@@ -76,17 +85,14 @@ impl Sink for Picture {
             Kind::Strip => strip::strip(run, self.figure),
             Kind::Sheet => sheet::sheet(run, self.figure, self.blocks.is_empty()),
         };
+        let Some(block) = block else {
+            return Err(self.too_large(self.blocks.len() + 1));
+        };
         self.blocks.push(block);
         let width = self.blocks.iter().map(Canvas::width).max().unwrap_or(0);
         let height: usize = self.blocks.iter().map(Canvas::height).sum();
         if width * height > PIXELS_LIMIT {
-            return Err(ExportError::Format {
-                path: self.output.path().to_owned(),
-                what: format!(
-                    "{} episodes make a picture of more than 100 megapixels; choose fewer with --episode, fewer steps with --every, or --figure sheet",
-                    self.blocks.len()
-                ),
-            });
+            return Err(self.too_large(self.blocks.len()));
         }
         Ok(())
     }

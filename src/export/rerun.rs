@@ -69,7 +69,7 @@ impl Sink for Recording {
         };
         let sensed = self.dataset.recording(first.episode_index)?;
         let refused = |error: RecordingStreamError| self.writer.failed(error);
-        let crc = crc32fast::hash(identity(run).as_bytes());
+        let crc = crc32fast::hash(identity(run, first.episode_index).as_bytes());
         // An id of one's own turns the properties off, unless they are asked for after it.
         let builder = builder(run)
             .recording_id(format!("{} {crc:08x}", title(run)))
@@ -199,9 +199,11 @@ fn builder(run: &Run) -> RecordingStreamBuilder {
         .recording_started(Timestamp::from(TimeInt(started)))
 }
 
-/// The same for the same export: two of one episode under other switches are two recordings.
-fn identity(run: &Run) -> String {
-    let mut identity = format!("{} {}", run.provenance.data.hash, run.provenance.state);
+/// The same for the same export: two of one episode under other switches are two recordings, and so are two episodes
+/// of one name.
+fn identity(run: &Run, episode: usize) -> String {
+    let (data, state) = (&run.provenance.data.hash, &run.provenance.state);
+    let mut identity = format!("{data} {episode} {state}");
     for model in &run.provenance.models {
         identity += &model.hash;
     }

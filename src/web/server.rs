@@ -7,7 +7,7 @@ mod limits;
 mod token;
 
 use std::io;
-use std::net::{IpAddr, SocketAddr, TcpListener};
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, TcpListener};
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -111,13 +111,19 @@ impl Server {
         self.token.as_deref()
     }
 
-    /// What to open in a browser on this machine; where it listens everywhere, by its loopback.
-    pub fn url(&self) -> String {
+    /// Where it is found on this machine; where it listens everywhere, its loopback.
+    pub fn near(&self) -> SocketAddr {
         let ip = match self.address.ip() {
-            IpAddr::V4(ip) if ip.is_unspecified() => IpAddr::from([127, 0, 0, 1]),
+            IpAddr::V4(ip) if ip.is_unspecified() => IpAddr::V4(Ipv4Addr::LOCALHOST),
+            IpAddr::V6(ip) if ip.is_unspecified() => IpAddr::V6(Ipv6Addr::LOCALHOST),
             ip => ip,
         };
-        let place = SocketAddr::new(ip, self.address.port());
+        SocketAddr::new(ip, self.address.port())
+    }
+
+    /// What to open in a browser on this machine.
+    pub fn url(&self) -> String {
+        let place = self.near();
         match &self.token {
             Some(token) => format!("http://{place}/?token={token}"),
             None => format!("http://{place}/"),
@@ -173,5 +179,29 @@ async fn listen(listener: TcpListener, site: Arc<Site>) {
             // A connection that breaks off concerns nobody else; one that only holds its place is let go.
             let _ = timeout(30 * PATIENCE, connection).await;
         });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a test may stop here")]
+
+    use super::*;
+
+    #[test]
+    fn one_that_listens_everywhere_is_opened_by_its_loopback() {
+        for (address, url) in [
+            ("0.0.0.0:80", "http://127.0.0.1:80/"),
+            ("[::]:80", "http://[::1]:80/"),
+            ("192.0.2.7:80", "http://192.0.2.7:80/"),
+        ] {
+            let server = Server {
+                address: address.parse().unwrap(),
+                token: None,
+                stop: None,
+                thread: None,
+            };
+            assert_eq!(server.url(), url);
+        }
     }
 }

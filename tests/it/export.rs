@@ -9,7 +9,7 @@ use poescope::export::csv::{EPISODE_KEYS, EXPERT_MEANS, MEANS, STEP_KEYS, episod
 use poescope::export::step::{OF_EXPERT, OF_SENSOR, READINGS};
 use serde_json::Value;
 
-use crate::common::{answer, poescope, three_experts, untrained};
+use crate::common::{answer, poescope, simulated, three_experts, untrained};
 
 /// Touch weaker, vision gone from step 9 on, another protocol than the usual one.
 const STATE: &str = "v=1;alpha=vision:0@9-,haptic:0.5;context=5;horizon=6;seed=4";
@@ -429,6 +429,47 @@ fn a_state_says_the_episode_and_the_steps_and_the_same_command_writes_the_same_b
             std::fs::read(exported(folder.path(), &name, &["--state", state])).unwrap()
         });
         assert!(one == two, "{name}");
+    }
+}
+
+/// A folder of two files, each with one episode of the name `ep00000`.
+pub(crate) fn namesakes(folder: &Path) -> PathBuf {
+    let data = folder.join("namesakes");
+    std::fs::create_dir(&data).unwrap();
+    for (file, seed) in [("a.mcap", "1"), ("b.mcap", "2")] {
+        let options = ["--steps", "6", "--split", "test", "--seed", seed];
+        simulated(data.join(file), 1, &options);
+    }
+    data
+}
+
+#[test]
+fn episodes_of_one_name_are_found_as_state_strings_call_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let data = namesakes(folder.path());
+    let data = data.to_str().unwrap();
+    let named = ["--episode", "ep00000", "--episode", "ep00000#2"];
+    let options = [&named[..], &["--data", data]].concat();
+    let both = lines(&exported(folder.path(), "both.jsonl", &options));
+    assert_eq!(both.len(), 12);
+    let (one, two) = (&both[3]["posterior"], &both[9]["posterior"]);
+    assert_ne!(one, two);
+    let state = both[9]["provenance"]["state"].as_str().unwrap();
+    assert!(state.contains("episode=ep00000#2"), "{state}");
+    let options = ["--data", data, "--state", state];
+    let again = lines(&exported(folder.path(), "again.jsonl", &options));
+    assert_eq!(again.len(), 6);
+    assert_eq!(&again[3]["posterior"], two);
+}
+
+#[test]
+fn names_that_differ_only_in_their_ending_have_tables_of_their_own() {
+    for (steps, episodes) in [
+        ("x/a.csv", "x/a.episodes.csv"),
+        ("run.v1", "run.v1.episodes.csv"),
+        ("run.v2", "run.v2.episodes.csv"),
+    ] {
+        assert_eq!(episodes_path(Path::new(steps)), Path::new(episodes));
     }
 }
 

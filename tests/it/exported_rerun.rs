@@ -1,6 +1,8 @@
 //! Recordings for the Rerun viewer: a file that its own tools take, and a stream that follows the cursor.
 
 use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::{Arc, Mutex};
@@ -13,10 +15,12 @@ use poescope::session::Session;
 use poescope::session::command::Command as Ask;
 use poescope::session::predict::Predictor;
 use poescope::session::trained::{Origin, Trained};
+use rerun::external::re_log_encoding::DecoderApp;
 use rerun::log::{Chunk, LogMsg};
 use rerun::sink::MemorySinkStorage;
 
 use crate::common::{answer, poescope, python};
+use crate::export::namesakes;
 
 fn sample(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -60,6 +64,25 @@ fn with_rerun_switched_off_an_export_says_so_and_writes_nothing() {
         "{said}"
     );
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn episodes_of_one_name_are_recordings_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("a.rrd");
+    let mut command = poescope();
+    command.args(["export", "--split", "test", "--data"]);
+    command.arg(namesakes(folder.path()));
+    answer(command.arg("--out").arg(&out));
+    let messages = DecoderApp::decode_lazy(BufReader::new(File::open(out).unwrap()));
+    let begun = messages.filter_map(|message| match message.unwrap() {
+        LogMsg::SetStoreInfo(begun) if begun.info.store_id.is_recording() => {
+            Some(begun.info.recording_id().as_str().to_owned())
+        }
+        _ => None,
+    });
+    let ids: BTreeSet<String> = begun.collect();
+    assert_eq!(ids.len(), 2, "{ids:?}");
 }
 
 /// A session on the samples, and the stream of it with what it has sent.

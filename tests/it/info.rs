@@ -73,6 +73,16 @@ fn json_has_every_episode_and_the_table_only_the_ends() {
 }
 
 #[test]
+fn a_name_cannot_command_the_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("evil.mcap");
+    write(&path, &[small("red\u{1b}[31m\u{9b}7m\nline", BASE, 1)]);
+    let text = String::from_utf8(info(&[], &path).stdout).unwrap();
+    assert!(text.contains("red [31m 7m line"), "{text}");
+    assert!(!text.chars().any(|c| c.is_control() && c != '\n'));
+}
+
+#[test]
 fn what_cannot_be_opened_is_one_line_and_an_exit_code() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("missing.mcap");

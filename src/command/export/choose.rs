@@ -7,12 +7,14 @@ use anyhow::bail;
 use crate::cli::ExportArgs;
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
+use crate::session::Session;
 use crate::session::state::State;
 
-/// Indices of the episodes: those of the split, those that are named, the state's, or the first. `seed` is what cuts a
-/// validation split where the data name none.
+/// Indices of the episodes: those of the split, those that are named, the state's, or the first. `session` is of the
+/// dataset, and `seed` is what cuts a validation split where the data name none.
 pub(super) fn episodes(
     dataset: &Dataset,
+    session: &Session,
     args: &ExportArgs,
     state: Option<&State>,
     seed: impl FnOnce() -> u64,
@@ -40,8 +42,10 @@ pub(super) fn episodes(
     if named.is_empty() {
         return Ok(vec![0]);
     }
+    // As state strings call them: where several files have episodes of one name, the second is `name#2`.
     let index = |name: &String| {
-        let found = dataset.metas().iter().position(|meta| meta.id == *name);
+        let mut all = 0..dataset.metas().len();
+        let found = all.find(|&index| session.episode_key(index) == Some(name));
         let Some(found) = found else {
             bail!(
                 "{} has no episode {name:?}; see what it has with `poescope info`",

@@ -7,6 +7,11 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::export::drive::Onlooker;
 
+/// Names come from recordings, and a terminal would obey what is not to be read in them.
+fn plain(text: &str) -> String {
+    text.replace(char::is_control, " ")
+}
+
 /// A bar on standard error, where that is a terminal.
 pub(super) struct Progress {
     bar: ProgressBar,
@@ -35,7 +40,7 @@ impl Onlooker for Progress {
     }
 
     fn begins(&mut self, episode: &str) {
-        self.bar.set_message(episode.to_owned());
+        self.bar.set_message(plain(episode));
     }
 
     fn done(&mut self) {
@@ -43,6 +48,7 @@ impl Onlooker for Progress {
     }
 
     fn note(&mut self, text: &str) {
+        let text = plain(text);
         self.bar.suspend(|| eprintln!("poescope: {text}"));
     }
 }

@@ -1,13 +1,15 @@
 //! `export --figure view`: what the terminal shows, as a picture.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 use anyhow::{Context, bail};
 use ratatui::layout::Size;
 
 use crate::cli::ExportArgs;
 use crate::command::open::{self, Opened};
-use crate::command::view::{send, wait};
+use crate::export::ExportError;
 use crate::export::drive::{Source, provenance_of};
 use crate::export::output::Output;
 use crate::export::png;
@@ -20,8 +22,11 @@ use crate::tui::face::Face;
 use crate::tui::picture;
 use crate::tui::theme::Depth;
 
-/// Opens, sends the keys, draws.
-pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
+/// Time between two looks for an end while the model computes.
+const PATIENCE: Duration = Duration::from_millis(50);
+
+/// Opens, sends the keys, draws; `stop` is set by a signal.
+pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
     if args.split.is_some() || args.episode.len() > 1 || args.steps.is_some() {
         bail!("--figure view is of one moment: --episode names its episode, --state its step too");
     }
@@ -38,20 +43,23 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let mut app = App::new(session, face, Size::new(args.size.0, args.size.1));
     if let Some(state) = &args.state {
         app.session.apply(Command::Restore(state.clone()));
-        wait(&mut app)?;
+        wait(&mut app.session, stop)?;
         let told = app.session.snapshot().message;
         if let Some(told) = told.filter(|message| message.error) {
             bail!("--state: {}", told.text);
         }
     }
     if !args.episode.is_empty() {
-        let episodes = super::choose::episodes(&dataset, args, None, || 0)?;
+        let episodes = super::choose::episodes(&dataset, &app.session, args, None, || 0)?;
         app.session.apply(Command::SelectEpisode(episodes[0]));
     }
-    if send(&mut app, &keys)? == Flow::Quit {
-        bail!("--keys: they quit, so there is nothing to draw");
+    for key in &keys {
+        wait(&mut app.session, stop)?;
+        if app.press(key) == Flow::Quit {
+            bail!("--keys: they quit, so there is nothing to draw");
+        }
     }
-    wait(&mut app)?;
+    wait(&mut app.session, stop)?;
     let snapshot = app.session.snapshot();
     let drawn = picture(&snapshot, &app.face, args.size);
     let source = Source {
@@ -63,4 +71,16 @@ pub(super) fn run(args: &ExportArgs) -> anyhow::Result<()> {
     facts.insert("state".to_owned(), snapshot.state);
     png::save(output, [drawn.width, drawn.height], &drawn.pixels, &facts)?;
     Ok(())
+}
+
+/// Waits until all that was asked for is computed.
+fn wait(session: &mut Session, stop: &AtomicBool) -> Result<(), ExportError> {
+    loop {
+        if stop.load(Ordering::Relaxed) {
+            return Err(ExportError::Stopped);
+        }
+        if session.wait_idle(PATIENCE) {
+            return Ok(());
+        }
+    }
 }

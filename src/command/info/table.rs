@@ -33,8 +33,10 @@ pub(super) fn render(info: &Info) -> String {
 struct Lines(String);
 
 impl Lines {
+    /// Names come from recordings, and a terminal would obey what is not to be read in them.
     fn add(&mut self, line: impl AsRef<str>) {
-        self.0.push_str(line.as_ref().trim_end());
+        let line = line.as_ref().replace(char::is_control, " ");
+        self.0.push_str(line.trim_end());
         self.0.push('\n');
     }
 

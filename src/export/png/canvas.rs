@@ -2,6 +2,8 @@
 
 use font8x8::legacy::BASIC_LEGACY;
 
+use super::PIXELS_LIMIT;
+
 /// A colour.
 pub type Rgb = [u8; 3];
 
@@ -30,6 +32,12 @@ impl Canvas {
             height,
             pixels: vec![WHITE; width * height],
         }
+    }
+
+    /// The same; none, and no memory taken, where that is more than a picture may have.
+    pub fn within_limit(width: usize, height: usize) -> Option<Self> {
+        let pixels = width.checked_mul(height)?;
+        (pixels <= PIXELS_LIMIT).then(|| Self::new(width, height))
     }
 
     /// Columns.
@@ -108,6 +116,14 @@ mod tests {
         assert_eq!(greys[10..15], greys[5..10]);
         assert_eq!(greys[15..], [255, 3, 3, 4, 4]);
         canvas.text([4, 3], "\u{e9}A", BLACK);
+    }
+
+    #[test]
+    fn what_would_fill_the_memory_is_not_even_begun() {
+        for (width, height) in [(1 << 20, 1 << 20), (usize::MAX, 2), (PIXELS_LIMIT + 1, 1)] {
+            assert_eq!(Canvas::within_limit(width, height), None);
+        }
+        assert_eq!(Canvas::within_limit(3, 2), Some(Canvas::new(3, 2)));
     }
 
     #[test]

@@ -8,6 +8,9 @@ use super::{Figure, Kind};
 use crate::export::output::Output;
 use crate::export::{ExportError, color};
 
+/// The longest keyword that PNG has room for.
+const KEYWORD: usize = 79;
+
 /// Writes a picture of so many columns and rows.
 pub(super) fn write(
     [width, height]: [usize; 2],
@@ -30,7 +33,7 @@ pub(super) fn write(
     encoder.set_color(ColorType::Rgb);
     encoder.set_depth(BitDepth::Eight);
     for (key, value) in facts {
-        let key = format!("poescope.{key}");
+        let key = keyword(key);
         // Plain text chunks are Latin-1; names of models and episodes need not be.
         let added = if value.is_ascii() {
             encoder.add_text_chunk(key, value.clone())
@@ -44,6 +47,18 @@ pub(super) fn write(
         .write_image_data(pixels.as_flattened())
         .and_then(|()| writer.finish())
         .map_err(&failed)
+}
+
+/// A longer one is cut in its middle: its ends say what it is and tell models of one name apart.
+fn keyword(key: &str) -> String {
+    let key = format!("poescope.{key}");
+    let letters = key.chars().count();
+    if letters <= KEYWORD {
+        return key;
+    }
+    let half = KEYWORD / 2;
+    let (start, end) = (key.chars().take(half), key.chars().skip(letters - half));
+    start.chain(['~']).chain(end).collect()
 }
 
 /// How to read the picture.
@@ -69,4 +84,31 @@ pub(super) fn about(figure: Figure) -> BTreeMap<String, String> {
         ("error".to_owned(), error),
         ("zoom".to_owned(), figure.zoom.to_string()),
     ])
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+    use super::*;
+
+    #[test]
+    fn a_model_may_have_a_long_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let name = "long".repeat(30);
+        let keys = [format!("model.{name}.hash"), format!("model.{name}_2.hash")];
+        let facts = BTreeMap::from(keys.map(|key| (key, "1".to_owned())));
+        let output = Output::create(&path, false).unwrap();
+        crate::export::png::save(output, [1, 1], &[[0; 3]], &facts).unwrap();
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let reader = png::Decoder::new(file).read_info().unwrap();
+        let texts = &reader.info().uncompressed_latin1_text;
+        let [one, two] = &texts[..] else {
+            panic!("two facts");
+        };
+        assert_ne!(one.keyword, two.keyword);
+        let ends = [&one.keyword[..19], &one.keyword[KEYWORD - 5..]];
+        assert_eq!(ends, ["poescope.model.long", ".hash"]);
+    }
 }

@@ -10,14 +10,14 @@ const NAME: usize = 16;
 /// White around labels, and between episodes.
 const MARGIN: usize = 4;
 
-/// `first` is the one at the top, which has the numbers of the steps above it.
-pub(super) fn sheet(run: &Run, figure: Figure, first: bool) -> Canvas {
+/// `first` is the one at the top, which has the numbers of the steps above it. None where it would be too large.
+pub(super) fn sheet(run: &Run, figure: Figure, first: bool) -> Option<Canvas> {
     let grid = Grid::new(run, figure);
     let left = MARGIN + NAME * LETTER + MARGIN;
     let top = if first { MARGIN + LETTER + MARGIN } else { 0 };
     let models = run.models.len();
     let height = top + (1 + models) * (grid.cell + GAP) + MARGIN;
-    let mut canvas = Canvas::new(left + grid.width() + MARGIN, height);
+    let mut canvas = Canvas::within_limit(left + grid.width() + MARGIN, height)?;
     if first {
         for (column, step) in grid.steps.iter().enumerate() {
             let number = (step + 1).to_string();
@@ -36,7 +36,7 @@ pub(super) fn sheet(run: &Run, figure: Figure, first: bool) -> Canvas {
         grid.draw(&mut canvas, [left, y], shows);
     }
     grid.bar(&mut canvas, [left, top], height - MARGIN - GAP);
-    canvas
+    Some(canvas)
 }
 
 fn end_of(name: &str) -> &str {

@@ -10,7 +10,8 @@ const MARGIN: usize = 8;
 /// From one line of letters to the next.
 const LINE: usize = LETTER + 4;
 
-pub(super) fn strip(run: &Run, figure: Figure) -> Canvas {
+/// None where it would be too large.
+pub(super) fn strip(run: &Run, figure: Figure) -> Option<Canvas> {
     let grid = Grid::new(run, figure);
     let names: Vec<&str> = run.provenance.models.iter().map(|m| &*m.name).collect();
     let mut rows = vec![("truth".to_owned(), Shows::Truth)];
@@ -27,7 +28,8 @@ pub(super) fn strip(run: &Run, figure: Figure) -> Canvas {
     let title = title(run, &names);
     let width = (left + grid.width() + MARGIN).max(MARGIN * 2 + title.chars().count() * LETTER);
     let top = MARGIN + 3 * LINE;
-    let mut canvas = Canvas::new(width, top + rows.len() * (grid.cell + GAP) + MARGIN);
+    let height = top + rows.len() * (grid.cell + GAP) + MARGIN;
+    let mut canvas = Canvas::within_limit(width, height)?;
     canvas.text([MARGIN, MARGIN], &title, BLACK);
     head(&grid, &mut canvas, left);
     for (row, (label, shows)) in rows.iter().enumerate() {
@@ -38,7 +40,7 @@ pub(super) fn strip(run: &Run, figure: Figure) -> Canvas {
     }
     let bottom = canvas.height() - MARGIN - GAP;
     grid.bar(&mut canvas, [left, top - LINE], bottom);
-    canvas
+    Some(canvas)
 }
 
 /// Above the columns: what the model's frames are, and the steps counted from 1.
