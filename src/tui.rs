@@ -97,7 +97,7 @@ pub fn draw(frame: &mut Frame, snapshot: &Snapshot, face: &Face) {
         palette::draw(buf, palette::pane(screen, layout.message), view);
     }
     if let Some(page) = face.help {
-        help::draw(buf, screen, page);
+        help::draw(buf, screen, page, face.address.as_deref());
     }
     if let Some(pixels) = &face.pixels {
         pixels.finish(buf);

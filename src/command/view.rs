@@ -107,6 +107,7 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     let _stream = stream(&mut app.session, &opened, args.rerun.as_deref())?;
     if let Some(server) = &server {
         announce(&mut app.session, &server.url(), args.rerun.as_deref());
+        app.face.address = Some(server.url());
     }
     let folder = std::env::current_dir().unwrap_or_default();
     app.take_along = Some(take_along::taker(&mut app.session, &opened, folder));
@@ -123,10 +124,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Says where browsers may join: together with the stream, whose own message would take its place, and on standard
-/// error, where it can be read again once the terminal is given back.
+/// Says where browsers may join, together with the stream, whose own message would take its place.
 fn announce(session: &mut Session, url: &str, rerun: Option<&str>) {
-    eprintln!("poescope: browsers may join at {url}");
     let stream = rerun.map_or_else(String::new, |to| format!("; streaming to Rerun at {to}"));
     session.say(Message {
         error: false,

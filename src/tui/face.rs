@@ -22,6 +22,8 @@ pub struct Face {
     pub episodes: Option<List>,
     /// Page of the keys that is shown over the screen.
     pub help: Option<usize>,
+    /// Where browsers may join, with the token if there is one: shown with the keys.
+    pub address: Option<String>,
     /// What is being typed, with what stands before it; none when nothing is.
     pub prompt: Option<String>,
     /// What can be chosen while a line is typed.
@@ -49,6 +51,7 @@ impl Default for Face {
             zoomed: false,
             episodes: None,
             help: None,
+            address: None,
             prompt: None,
             palette: None,
             splits: Vec::new(),

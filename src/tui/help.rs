@@ -30,8 +30,8 @@ pub fn pages(screen: Size) -> usize {
         .max(1)
 }
 
-/// Draws one page over the whole screen.
-pub fn draw(buf: &mut Buffer, screen: Rect, page: usize) {
+/// Draws one page over the whole screen, with the address at which browsers may join.
+pub fn draw(buf: &mut Buffer, screen: Rect, page: usize, address: Option<&str>) {
     Clear.render(screen, buf);
     let (columns, rows) = grid(screen);
     let inner = Rect {
@@ -47,6 +47,17 @@ pub fn draw(buf: &mut Buffer, screen: Rect, page: usize) {
         "Esc closes".to_owned()
     };
     right(buf, inner, inner.width, 0, &note, dim());
+
+    if let Some(address) = address {
+        text(
+            buf,
+            inner,
+            0,
+            1,
+            &format!("in a browser: {address}"),
+            Style::new(),
+        );
+    }
 
     let column_width = inner.width / columns;
     let shown = usize::from(columns * rows);
@@ -111,7 +122,7 @@ mod tests {
             let mut all = String::new();
             for page in 0..pages(size) {
                 let mut buf = Buffer::empty(screen);
-                draw(&mut buf, screen, page);
+                draw(&mut buf, screen, page, Some("http://here/"));
                 all.push_str(&super::super::print::to_text(&buf, false));
             }
             for (_, bindings) in groups() {

@@ -113,6 +113,9 @@ fn a_switch_in_one_face_shows_in_the_other() {
         let on = |view: &View| view.value("poescope-step") == json!(8.0);
         browser.until("the terminal's step", on).await;
     });
+    terminal.press("?");
+    terminal.shows(&format!("in a browser: http://127.0.0.1:{port}/"));
+    terminal.press("\u{1b}");
     terminal.press("q");
     assert!(terminal.child.wait().unwrap().success());
 }
