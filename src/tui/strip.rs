@@ -20,6 +20,7 @@ use super::paint::{put, text, width};
 use super::predict::edited;
 use super::theme::{PREDICTION, dim, strong};
 use super::view::{Pane, View};
+use super::words;
 use crate::episode::Frame;
 use crate::session::snapshot::{Snapshot, StripCell};
 
@@ -153,7 +154,9 @@ impl Grid {
         let at = text(buf, pane, 0, 0, mark, strong());
         text(buf, pane, at, 0, &every_text(self.every), dim());
         for (i, row) in self.rows.iter().enumerate() {
-            row.label(buf, pane, 1 + i as u16 * self.pitch, (self.pitch, face));
+            let predicted = words::prediction(snapshot).0;
+            let at = 1 + i as u16 * self.pitch;
+            row.label(buf, pane, (at, self.pitch), predicted, face);
         }
         for (place, step) in (self.from..self.until).step_by(self.every).enumerate() {
             let at = LABELS + place as u16 * (self.side + 1);
@@ -212,14 +215,16 @@ impl Grid {
 }
 
 impl Row {
-    fn label(self, buf: &mut Buffer, pane: Rect, row: u16, (rows, face): (u16, &Face)) {
+    /// At a row of the pane, of which it has so many.
+    fn label(self, buf: &mut Buffer, pane: Rect, at: (u16, u16), predicted: &str, face: &Face) {
+        let (row, rows) = at;
         let prediction = strong().patch(face.depth.ink(PREDICTION));
         let range = format!("±{ERROR_RANGE:.2}");
         let (name, style, below) = match self {
             Self::Truth => ("truth", strong(), ""),
             Self::Belief => ("belief", strong(), ""),
-            Self::Prediction => ("prediction", prediction, ""),
-            Self::Model => ("belief│", strong(), "prediction"),
+            Self::Prediction => (predicted, prediction, ""),
+            Self::Model => ("belief│", strong(), predicted),
             Self::Error => ("error", strong(), range.as_str()),
         };
         text(buf, pane, 0, row, name, style);

@@ -253,6 +253,23 @@ fn the_state_string_goes_to_the_clipboard() {
 }
 
 #[test]
+fn a_sample_is_not_called_the_prediction() {
+    let rows = |script: &str| {
+        let app = pressed(script, LARGE);
+        let shown = to_text(&screen(&app.session.snapshot(), &app.face, LARGE), false);
+        let named = |name: &str| {
+            shown
+                .lines()
+                .filter(|line| line.trim_start().starts_with(name))
+                .count()
+        };
+        (named("pred "), named("sample "))
+    };
+    assert_eq!(rows("lllllll"), (1, 0));
+    assert_eq!(rows("lllllll m"), (0, 1));
+}
+
+#[test]
 fn views_come_round() {
     let mut app = pressed("", SMALL);
     app.press(&Key::of_char('v'));

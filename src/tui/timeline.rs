@@ -23,6 +23,7 @@ use super::paint::{column, put, right, text};
 use super::stack::{legend, stack};
 use super::theme::{PREDICTION, dim, strong};
 use super::view::Pane;
+use super::words::prediction;
 use crate::modality::Expert;
 use crate::session::command::Looping;
 use crate::session::snapshot::{Snapshot, StepPsnr};
@@ -97,7 +98,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         prediction_rows,
         axis,
         snapshot,
-        ("pred", ink),
+        (prediction(snapshot).1, ink),
         |psnr| psnr.prediction,
     );
 }

@@ -6,6 +6,7 @@ use ratatui::style::Style;
 
 use super::paint::{text, width};
 use super::theme::dim;
+use crate::session::snapshot::Snapshot;
 
 /// The words on lines of at most so many columns; a word that is longer has a line of its own.
 pub fn wrap(sentence: &str, columns: u16) -> Vec<String> {
@@ -61,6 +62,15 @@ pub fn sentence(buf: &mut Buffer, pane: Rect, row: u16, content: &str, style: St
         row += 1;
     }
     row
+}
+
+/// What stands as the prediction, in full and in short: one of its samples, where that is shown.
+pub fn prediction(snapshot: &Snapshot) -> (&'static str, &'static str) {
+    if snapshot.sampling.shown {
+        ("sample 1", "sample")
+    } else {
+        ("prediction", "pred")
+    }
 }
 
 /// A glyph in its style, and what it stands for.

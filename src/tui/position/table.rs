@@ -20,7 +20,7 @@ use super::super::paint::{below_title, put, text, title};
 use super::super::plane::{Extent, Plane};
 use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
-use super::super::words::{Entry, legend, legend_rows};
+use super::super::words::{self, Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
 use super::{at_step, dots, ellipses, marked, marks, masses, off, paths, window};
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
@@ -155,7 +155,8 @@ impl Said {
         };
         entry("╌×", dim(), "truth".to_owned());
         entry("─●", Style::new(), "belief".to_owned());
-        entry("┈◆", prediction, "prediction".to_owned());
+        let (predicted, _) = words::prediction(snapshot);
+        entry("┈◆", prediction, predicted.to_owned());
         entry("+", Style::new(), "tip".to_owned());
         if let Some(factor) = self.arrows {
             let pulls = if factor > 1.0 {
@@ -170,7 +171,7 @@ impl Said {
             let model = snapshot.models.get(other.model);
             let name = model.map_or("B", |model| &model.name);
             entry("╴·○", second, format!("{name} belief"));
-            entry("· ◇", second, "prediction".to_owned());
+            entry("· ◇", second, predicted.to_owned());
         }
         if snapshot.control_edit.is_some() {
             entry("· r", dim(), "recorded controls".to_owned());

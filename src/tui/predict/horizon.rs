@@ -19,7 +19,7 @@ use super::super::plot::Plot;
 use super::super::scale::Scale;
 use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
-use super::super::words::{Entry, legend_below};
+use super::super::words::{self, Entry, legend_below};
 use super::{ahead, cursor_ahead, labels};
 use crate::session::snapshot::{Snapshot, StepPsnr};
 
@@ -108,7 +108,8 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 
 /// What the lines are called, in their order.
 fn names(snapshot: &Snapshot, columns: u16) -> Vec<String> {
-    let prediction = if columns < 26 { "pred" } else { "prediction" };
+    let (full, short) = words::prediction(snapshot);
+    let prediction = if columns < 26 { short } else { full };
     let mut names = vec!["belief".to_owned(), prediction.to_owned()];
     if let Some(other) = &snapshot.other {
         let model = snapshot.models.get(other.model);
