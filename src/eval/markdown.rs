@@ -157,6 +157,12 @@ fn comparisons(text: &mut String, summary: &Summary) {
     for c in &summary.comparisons {
         let _ = writeln!(text, "- {}.", c.sentence());
     }
+    if summary.seeds.is_empty() {
+        let _ = writeln!(
+            text,
+            "- All of this is of one training a model: another seed may say otherwise."
+        );
+    }
     for [better, worse] in &summary.unasked {
         let _ = writeln!(
             text,
