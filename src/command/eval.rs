@@ -102,19 +102,17 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
-    let left_out = file.left_out();
     let scope = Scope {
         data: dataset.name().to_owned(),
         data_hash: dataset.data_hash().to_owned(),
         split: split.name().to_owned(),
-        left_out: left_out.len(),
+        left_out: file.left_out(),
     };
     let (indices, all) = file.scores();
     let scored = Scored {
         contest: &contest,
         all: &all,
         indices: &indices,
-        left_out: &left_out,
         scope: &scope,
         dataset: &dataset,
         folders: &folders,
@@ -239,8 +237,6 @@ struct Scored<'a> {
     all: &'a [EpisodeScores],
     /// Their places in the dataset.
     indices: &'a [usize],
-    /// Why others were left out.
-    left_out: &'a [String],
     scope: &'a Scope,
     dataset: &'a Dataset,
     folders: &'a [PathBuf],
@@ -256,8 +252,8 @@ fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
         ..
     } = *scored;
     let Some(summary) = summarise(contest, all, scope)? else {
-        if let Some(why) = scored.left_out.first() {
-            let count = scope.left_out;
+        if let Some(why) = scope.left_out.first() {
+            let count = scope.left_out.len();
             bail!(
                 "{}: all {count} episodes of split `{}` were left out: {why}",
                 scope.data,

@@ -15,7 +15,7 @@ pub fn markdown(summary: &Summary) -> String {
     let Scope {
         split, left_out, ..
     } = &summary.scope;
-    let left_out = match left_out {
+    let left_out = match left_out.len() {
         0 => String::new(),
         count => format!(" ({count} left out)"),
     };

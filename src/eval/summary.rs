@@ -63,8 +63,8 @@ pub struct Scope {
     pub data_hash: String,
     /// The split.
     pub split: String,
-    /// Episodes of it that could not be scored.
-    pub left_out: usize,
+    /// Why each episode of it that could not be scored was left out.
+    pub left_out: Vec<String>,
 }
 
 /// What the tables and figures are drawn from.

@@ -14,7 +14,7 @@ use ratatui::widgets::{Clear, Widget};
 use super::face::Face;
 use super::paint::{right, text, width};
 use super::theme::{WARNING, dim, strong};
-use super::words::broken;
+use super::words::wrap;
 use crate::session::command::Scope;
 use crate::session::snapshot::{Badge, Snapshot};
 
@@ -110,7 +110,7 @@ pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let episode = snapshot.episode.as_deref();
     if let Some(message) = &snapshot.message {
         let mark = if message.error { "! " } else { "" };
-        let lines = broken(&message.text, pane.width - width(mark).min(pane.width));
+        let lines = wrap(&message.text, pane.width - width(mark).min(pane.width));
         // What does not fit on a line takes those above it: it may be what is to be copied, or to be done.
         let rows = (lines.len() as u16).clamp(1, 1 + pane.y.min(MOST_ABOVE));
         let pane = Rect {

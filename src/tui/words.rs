@@ -8,23 +8,9 @@ use super::paint::{text, width};
 use super::theme::dim;
 use crate::session::snapshot::Snapshot;
 
-/// The words on lines of at most so many columns; a word that is longer has a line of its own.
+/// The words on lines of at most so many columns; a word that is longer than a line begins where it stands and goes on
+/// in the next, so that nothing is lost.
 pub fn wrap(sentence: &str, columns: u16) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in sentence.split_whitespace() {
-        match lines.last_mut() {
-            Some(line) if width(line) + 1 + width(word) <= columns => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
-/// The same, but a word that is longer than a line begins where it stands and goes on in the next: nothing is lost.
-pub fn broken(sentence: &str, columns: u16) -> Vec<String> {
     let columns = columns.max(1);
     let mut lines: Vec<String> = Vec::new();
     for word in sentence.split_whitespace() {
@@ -133,13 +119,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn words_are_never_cut_and_lines_never_too_long() {
+    fn lines_are_never_too_long_and_words_cut_only_where_no_line_holds_them() {
         assert_eq!(
             wrap("claims 95 %, holds 71 %", 12),
             ["claims 95 %,", "holds 71 %"]
         );
         assert_eq!(wrap("  ", 5), Vec::<String>::new());
-        assert_eq!(wrap("overconfident at", 4), ["overconfident", "at"]);
+        assert_eq!(
+            wrap("copied: v=1;episode=ep00000;step=3", 10),
+            ["copied: v=", "1;episode=", "ep00000;st", "ep=3"]
+        );
+        assert_eq!(wrap("ab", 0), ["a", "b"]);
     }
 
     #[test]
@@ -149,13 +139,5 @@ mod tests {
         let rows = legend_rows(&entries, 17);
         assert_eq!(rows.iter().map(|row| row.len()).collect::<Vec<_>>(), [2, 1]);
         assert!(legend_rows(&[], 9).is_empty());
-    }
-
-    #[test]
-    fn a_word_that_is_longer_than_a_line_goes_on_in_the_next() {
-        let lines = broken("copied: v=1;episode=ep00000;step=3", 10);
-        assert_eq!(lines, ["copied: v=", "1;episode=", "ep00000;st", "ep=3"]);
-        assert_eq!(broken("", 10), [""; 0]);
-        assert_eq!(broken("ab", 0), ["a", "b"]);
     }
 }
