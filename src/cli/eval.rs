@@ -14,7 +14,8 @@ pub struct EvalArgs {
     /// Dataset to score on [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
-    /// Checkpoint folder; repeat for several [default: every one beside the data, else the sample's]
+    /// Checkpoint folder, or the scores that an earlier run left of one; repeat for several
+    /// [default: every checkpoint beside the data, else the sample's]
     #[arg(long)]
     pub model: Vec<PathBuf>,
     /// The paper's protocol: `synthetic` sees 4 images and predicts 11, `mit` sees 5 and predicts 37

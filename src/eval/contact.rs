@@ -77,7 +77,7 @@ pub fn aligned(contest: &Contest, all: &[EpisodeScores]) -> (f32, Vec<Aligned>) 
         .collect();
     let mut rows = Vec::new();
     for (place, subject) in contest.subjects.iter().enumerate() {
-        let config = &contest.candidate(subject).inspector.model().config;
+        let config = &contest.candidate(subject).config;
         let experts = config.experts.iter().copied().chain([Expert::Prior]);
         for (i, expert) in experts.enumerate() {
             for offset in -AROUND..=AROUND {
@@ -113,14 +113,10 @@ fn averaged(subject: &Subject, expert: Expert, offset: i64, values: &[f64]) -> O
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test may stop here")]
 mod tests {
-    use candle_core::Device;
-
     use super::*;
     use crate::eval::protocol::Protocol;
     use crate::eval::score::{Candidate, SubjectScores};
     use crate::eval::setting::Setting;
-    use crate::model::Model;
-    use crate::model::inspect::Inspector;
 
     /// An episode of ten steps that is touched at `onset`, where vision has the share `touched`, and 0.2 elsewhere.
     fn touched_at(onset: usize, touched: f32) -> EpisodeScores {
@@ -141,17 +137,13 @@ mod tests {
 
     #[test]
     fn shares_line_up_with_the_moment_of_contact() {
-        let mut config = Config::named("v").unwrap();
-        config.hidden = 8;
-        let model = Model::new(config, 0, &Device::Cpu).unwrap();
+        let config = Config::named("v").unwrap();
         let contest = Contest {
             candidates: vec![Candidate {
                 label: "v".to_owned(),
                 recipe: String::new(),
                 seed: None,
-                hash: String::new(),
-                inspector: Inspector::new(model).unwrap(),
-                probe: None,
+                config,
                 contact_newtons: Some(1.0),
                 regressors: None,
             }],
@@ -161,7 +153,6 @@ mod tests {
                 setting: Setting::default(),
             }],
             protocol: Protocol::SYNTHETIC,
-            mean_frame: Vec::new(),
         };
         let all: Vec<EpisodeScores> = (0..24)
             .map(|i| touched_at(3 + i % 3, if i % 2 == 0 { 0.5 } else { 0.7 }))

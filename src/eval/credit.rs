@@ -5,7 +5,8 @@ use candle_core::Result;
 use serde::{Deserialize, Serialize};
 
 use super::prediction::{roll, squared_error};
-use super::score::{Candidate, Contest};
+use super::protocol::Protocol;
+use super::score::Scorer;
 use crate::episode::Episode;
 use crate::measure::calibration::{Error2, nll};
 use crate::measure::shapley::shapley;
@@ -28,13 +29,13 @@ pub struct Credit {
 
 /// Plays every set of sensors on the context and predicts.
 pub(super) fn of(
-    contest: &Contest,
-    candidate: &Candidate,
+    scorer: &Scorer,
+    protocol: Protocol,
     experts: &ExpertTrace,
     episode: &Episode,
     truth: &[(Vec<f32>, usize)],
 ) -> Result<Credit> {
-    let inspector = &candidate.inspector;
+    let inspector = &scorer.inspector;
     let sensors = experts.experts.len();
     let beliefs = experts.controls.len() + 1;
     let settings: Vec<Alphas> = (0..1_usize << sensors)
@@ -51,8 +52,8 @@ pub(super) fn of(
     let mut means = Vec::new();
     let mut likelihoods = Vec::new();
     for beliefs in &filtered {
-        let rolled = roll(inspector, experts, beliefs, contest.protocol)?;
-        likelihoods.push(position_nll(contest, candidate, beliefs, &rolled, episode));
+        let rolled = roll(inspector, experts, beliefs, protocol)?;
+        likelihoods.push(position_nll(scorer, protocol, beliefs, &rolled, episode));
         means.extend(rolled.gaussians.mean);
     }
     let pixels = inspector.decode_pixels(&means)?;
@@ -85,17 +86,17 @@ pub(super) fn of(
 /// Mean over the horizon of the negative log-likelihood of the true position, in nats, under the probe and the
 /// uncertainty that accumulates, `A P Aᵀ + Q` (D20).
 fn position_nll(
-    contest: &Contest,
-    candidate: &Candidate,
+    scorer: &Scorer,
+    protocol: Protocol,
     beliefs: &BeliefTrace,
     rolled: &Rolled,
     episode: &Episode,
 ) -> Option<f64> {
-    let probe = candidate.probe.as_ref()?;
+    let probe = scorer.probe.as_ref()?;
     let poses = episode.object.as_ref()?;
-    let config = &candidate.inspector.model().config;
+    let config = &scorer.inspector.model().config;
     let latent = config.latent;
-    let from = contest.protocol.context - config.frame_stack - 1;
+    let from = protocol.context - config.frame_stack - 1;
     let mut covariance = diagonal(beliefs.posterior.row(from).1);
     let mut sum = 0.0;
     for step in 0..rolled.gaussians.len() {
@@ -105,7 +106,7 @@ fn position_nll(
             .get(step * latent * latent..(step + 1) * latent * latent)?;
         covariance = propagate(transition, &covariance, log_var);
         let [x, y] = probe.position(mean);
-        let truth = poses.get(contest.protocol.context + step)?;
+        let truth = poses.get(protocol.context + step)?;
         let error = Error2 {
             error_m: [truth.x - x, truth.y - y],
             covariance: plane(&probe.weights, &covariance)?,

@@ -220,7 +220,7 @@ fn of_row(
     all: &[EpisodeScores],
 ) -> Result<Vec<PoseErrors>> {
     let candidate = contest.candidate(subject);
-    let config = &candidate.inspector.model().config;
+    let config = &candidate.config;
     let mut latents = Latents::new(config.latent);
     for episode in all {
         if let (Some(poses), Some(scores)) = (&episode.poses, episode.subjects.get(place)) {

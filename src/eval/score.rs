@@ -11,11 +11,12 @@ use super::setting::Setting;
 use crate::episode::{Episode, Frame};
 use crate::measure::frame::psnr_db_from_mse;
 use crate::measure::ssim::ssim;
+use crate::model::config::Config;
 use crate::model::inspect::Inspector;
 use crate::model::probe::{Probe, Regressors};
 
-/// A trained model, and what was fitted on its training split.
-#[derive(Debug)]
+/// What the tables know of a trained model; its weights have no part in them.
+#[derive(Clone, Debug)]
 pub struct Candidate {
     /// How it is called: the model's name, with recipe and seed where that is not enough.
     pub label: String,
@@ -23,12 +24,8 @@ pub struct Candidate {
     pub recipe: String,
     /// The seed of its training; none where its report does not say.
     pub seed: Option<u64>,
-    /// Names what its files hold.
-    pub hash: String,
-    /// The model.
-    pub inspector: Inspector,
-    /// Its position probe.
-    pub probe: Option<Probe>,
+    /// Its experts and sizes.
+    pub config: Config,
     /// The force that counts as contact in its training set, in newtons; none where its report does not say.
     pub contact_newtons: Option<f32>,
     /// Its pose regressors.
@@ -38,7 +35,7 @@ pub struct Candidate {
 impl Candidate {
     /// The model's name.
     pub fn model(&self) -> &str {
-        &self.inspector.model().config.name
+        &self.config.name
     }
 
     /// Its model and recipe: candidates of one group differ in their seeds alone.
@@ -64,7 +61,7 @@ pub struct Subject {
 }
 
 /// What is compared, and how.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Contest {
     /// The models.
     pub candidates: Vec<Candidate>,
@@ -72,8 +69,6 @@ pub struct Contest {
     pub subjects: Vec<Subject>,
     /// How much is seen and predicted.
     pub protocol: Protocol,
-    /// Mean training frame in [0, 1], row major: the predictor that always says it.
-    pub mean_frame: Vec<f32>,
 }
 
 impl Contest {
@@ -81,6 +76,17 @@ impl Contest {
     pub fn candidate(&self, subject: &Subject) -> &Candidate {
         &self.candidates[subject.candidate]
     }
+}
+
+/// A trained model that can be scored.
+#[derive(Debug)]
+pub struct Scorer {
+    /// The model.
+    pub inspector: Inspector,
+    /// Its position probe.
+    pub probe: Option<Probe>,
+    /// Mean training frame in [0, 1], row major: the predictor that always says it.
+    pub mean_frame: Vec<f32>,
 }
 
 /// Scores of predicted images, one a horizon.
@@ -129,7 +135,7 @@ pub struct SubjectScores {
     pub shares: Option<Vec<Vec<f32>>>,
 }
 
-/// Everything about an episode: a line of the score file.
+/// Everything about an episode: of one model a line of its score file, of several what the tables are made of.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EpisodeScores {
     /// Its name.
@@ -155,9 +161,24 @@ fn targets(episode: &Episode, protocol: Protocol) -> Vec<(Vec<f32>, usize)> {
         .collect()
 }
 
-/// Scores every row on an episode of `protocol.images()` images or more.
-pub fn score(contest: &Contest, episode: &Episode) -> Result<EpisodeScores> {
-    let protocol = contest.protocol;
+/// Scores a model under each setting on an episode of `protocol.images()` images or more.
+pub fn score(
+    scorer: &Scorer,
+    settings: &[Setting],
+    protocol: Protocol,
+    episode: &Episode,
+) -> Result<EpisodeScores> {
+    let mut scores = trivial(&scorer.mean_frame, protocol, episode)?;
+    let truth = targets(episode, protocol);
+    for setting in settings {
+        let row = row(scorer, setting, protocol, episode, &truth)?;
+        scores.subjects.push(row);
+    }
+    Ok(scores)
+}
+
+/// What is known of an episode without a model.
+fn trivial(mean_frame: &[f32], protocol: Protocol, episode: &Episode) -> Result<EpisodeScores> {
     if episode.steps() < protocol.images() {
         candle_core::bail!(
             "episode `{}` has {} images, {} are needed",
@@ -176,52 +197,43 @@ pub fn score(contest: &Contest, episode: &Episode) -> Result<EpisodeScores> {
             .map_while(|t| episode.force_newtons(t))
             .collect(),
         held: FrameScores::of(std::iter::repeat(held.as_slice()), &truth),
-        mean_frame: FrameScores::of(std::iter::repeat(contest.mean_frame.as_slice()), &truth),
-        subjects: contest
-            .subjects
-            .iter()
-            .map(|subject| row(contest, subject, episode, &truth))
-            .collect::<Result<_>>()?,
+        mean_frame: FrameScores::of(std::iter::repeat(mean_frame), &truth),
+        subjects: Vec::new(),
     })
 }
 
 /// Scores one row.
 fn row(
-    contest: &Contest,
-    subject: &Subject,
+    scorer: &Scorer,
+    setting: &Setting,
+    protocol: Protocol,
     episode: &Episode,
     truth: &[(Vec<f32>, usize)],
 ) -> Result<SubjectScores> {
-    let candidate = contest.candidate(subject);
-    let inspector = &candidate.inspector;
+    let inspector = &scorer.inspector;
     let config = &inspector.model().config;
-    let damaged = subject.setting.damage(episode);
+    let damaged = setting.damage(episode);
     let experts = encode(inspector, damaged.as_ref().unwrap_or(episode))?;
-    let alphas = subject.setting.alphas(config, experts.controls.len() + 1);
+    let alphas = setting.alphas(config, experts.controls.len() + 1);
     let beliefs = inspector.filter(&experts, &alphas)?;
-    let rolled = roll(inspector, &experts, &beliefs, contest.protocol)?;
+    let rolled = roll(inspector, &experts, &beliefs, protocol)?;
     let pixels = inspector.decode_pixels(&rolled.gaussians.mean)?;
-    let size = pixels.len() / contest.protocol.horizon.max(1);
+    let size = pixels.len() / protocol.horizon.max(1);
     let frames = FrameScores::of(pixels.chunks_exact(size.max(1)), truth);
-    let as_trained = subject.setting == Setting::default();
+    let as_trained = *setting == Setting::default();
     let credit = if as_trained && config.training.masks {
-        Some(credit::of(contest, candidate, &experts, episode, truth)?)
+        Some(credit::of(scorer, protocol, &experts, episode, truth)?)
     } else {
         None
     };
     let means = [&beliefs.posterior.mean, &rolled.gaussians.mean];
     if means.into_iter().flatten().any(|mean| !mean.is_finite()) {
-        candle_core::bail!("`{}` believes what is not a finite number", subject.label);
+        candle_core::bail!("`{}` believes what is not a finite number", config.name);
     }
+    let probe = scorer.probe.as_ref();
     Ok(SubjectScores {
         frames,
-        shares: shares(
-            config,
-            &alphas,
-            &experts,
-            &beliefs,
-            candidate.probe.as_ref(),
-        ),
+        shares: shares(config, &alphas, &experts, &beliefs, probe),
         filtered: beliefs.posterior.mean,
         predicted: rolled.gaussians.mean,
         credit,
@@ -259,16 +271,11 @@ mod tests {
 
     #[test]
     fn trivial_predictors_say_the_last_seen_frame_and_the_mean_one() {
-        let contest = Contest {
-            candidates: Vec::new(),
-            subjects: Vec::new(),
-            protocol: Protocol {
-                context: 3,
-                horizon: 4,
-            },
-            mean_frame: vec![60.0 / 255.0; 64],
+        let protocol = Protocol {
+            context: 3,
+            horizon: 4,
         };
-        let scores = score(&contest, &ramp(8)).unwrap();
+        let scores = trivial(&[60.0 / 255.0; 64], protocol, &ramp(8)).unwrap();
         // Image 3 of 1.. is held, of grey 20; predicted are greys 30 to 60.
         let error = |grey: f64| 64.0 * (grey / 255.0).powi(2);
         for (h, off) in [10.0, 20.0, 30.0, 40.0].into_iter().enumerate() {
@@ -278,6 +285,6 @@ mod tests {
             assert!((scores.mean_frame.squared_error[h] - error(40.0 - off)).abs() < 1e-5);
         }
         assert_eq!(scores.held.ssim.len(), 4);
-        assert!(score(&contest, &ramp(6)).is_err());
+        assert!(trivial(&[], protocol, &ramp(6)).is_err());
     }
 }

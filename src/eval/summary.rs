@@ -206,7 +206,7 @@ fn credited(contest: &Contest, all: &[EpisodeScores]) -> Vec<Credited> {
             .iter()
             .filter_map(|episode| episode.subjects.get(place)?.credit.as_ref())
             .collect();
-        let experts = &contest.candidate(subject).inspector.model().config.experts;
+        let experts = &contest.candidate(subject).config.experts;
         for (i, &expert) in experts.iter().enumerate() {
             let errors: Vec<f64> = credits
                 .iter()

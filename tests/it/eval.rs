@@ -81,7 +81,7 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<_> = fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().path())
-        .filter(|path| path.extension().unwrap() != "jsonl")
+        .filter(|path| path.is_file())
         .map(|path| {
             (
                 path.file_name().unwrap().to_string_lossy().into_owned(),
@@ -91,6 +91,25 @@ fn results(folder: &Path) -> Vec<(String, Vec<u8>)> {
         .collect();
     files.sort();
     files
+}
+
+/// The score files of a run, in the order of the models' names.
+fn score_files(out: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(out.join("scores")).unwrap();
+    let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// That of a model.
+fn score_file(out: &Path, model: &str) -> PathBuf {
+    let start = format!("{model}-");
+    let of = |path: &PathBuf| {
+        let name = path.file_name().unwrap().to_str().unwrap();
+        // After the model there is the hash, eight digits long.
+        name.starts_with(&start) && name[start.len()..].split_once(['-', '.']).unwrap().0.len() == 8
+    };
+    score_files(out).into_iter().find(of).unwrap()
 }
 
 #[test]
@@ -132,34 +151,130 @@ fn shards_and_interrupted_runs_come_to_the_same_bytes() {
     assert_eq!(fs::read_to_string(whole.join("tables.md")).unwrap(), said);
     assert!(results(&shards) == expected);
 
-    // A run that was killed while it wrote: the head, some lines, and half of one.
-    let scores = fs::read_to_string(whole.join("scores.jsonl")).unwrap();
+    // A run that was killed while it wrote: one model done, of another the head, some lines, and half of one.
+    let of_vhp = score_file(&whole, "vhp");
+    let scores = fs::read_to_string(&of_vhp).unwrap();
     let lines: Vec<&str> = scores.split_inclusive('\n').collect();
     assert_eq!(lines.len(), 1 + EPISODES);
-    fs::create_dir(&torn).unwrap();
+    fs::create_dir_all(torn.join("scores")).unwrap();
+    let place = |path: &Path| torn.join("scores").join(path.file_name().unwrap());
     let half = lines[..8].concat() + &lines[8][..lines[8].len() / 2];
-    fs::write(torn.join("scores.jsonl"), half).unwrap();
+    fs::write(place(&of_vhp), half).unwrap();
+    let done = score_file(&whole, "v");
+    fs::copy(&done, place(&done)).unwrap();
     answer(bench.eval(&[]).arg("--out").arg(&torn));
     assert!(results(&torn) == expected);
-    assert_eq!(
-        fs::read_to_string(torn.join("scores.jsonl")).unwrap(),
-        scores
-    );
+    assert_eq!(fs::read_to_string(place(&of_vhp)).unwrap(), scores);
 
-    // Scores of another protocol, of other rows or of other weights do not mix with these.
-    let refused = |options: &[&str]| {
+    // Scores of another protocol or under other settings do not mix with these.
+    let refused = |options: &[&str], why: &str| {
         let mut eval = bench.eval(options);
         let output = eval.arg("--out").arg(&whole).output().unwrap();
         let complaint = String::from_utf8(output.stderr).unwrap();
-        let known = "scores of other models, data or settings";
-        assert!(complaint.contains(known), "{complaint}");
+        assert!(complaint.contains(why), "{complaint}");
     };
-    refused(&["--context", "3"]);
-    refused(&["--state", "alpha=vision:0.5"]);
-    let config = three_experts();
-    let model = Model::new(config, 8, &Device::Cpu).unwrap();
+    refused(
+        &["--context", "3"],
+        "holds scores of 4 images seen and 5 predicted, not of 3 images seen and 5 predicted",
+    );
+    refused(
+        &["--state", "alpha=vision:0.5"],
+        "holds scores under other settings; choose another --out",
+    );
+    // A model that was trained further is scored anew, and nothing of what it was before stays in the tables.
+    let model = Model::new(three_experts(), 8, &Device::Cpu).unwrap();
     checkpoint::save(&model, &bench.models[2], DType::F16, None).unwrap();
-    refused(&[]);
+    answer(bench.eval(&[]).arg("--out").arg(&whole));
+    let anew = bench.out("anew");
+    answer(bench.eval(&[]).arg("--out").arg(&anew));
+    assert_eq!(
+        [score_files(&whole).len(), score_files(&anew).len()],
+        [4, 3]
+    );
+    assert!(results(&whole) == results(&anew) && results(&anew) != expected);
+}
+
+#[test]
+fn scores_stand_for_models_without_their_weights() {
+    let bench = Bench::new();
+    let whole = bench.out("whole");
+    let said = answer(bench.eval(&[]).arg("--out").arg(&whole));
+    let packed: Vec<PathBuf> = ["v", "vhp", "v-h-p"]
+        .into_iter()
+        .map(|model| {
+            let path = bench.out(&format!("{model}.jsonl.zst"));
+            let scores = fs::read(score_file(&whole, model)).unwrap();
+            fs::write(&path, zstd::encode_all(&*scores, 3).unwrap()).unwrap();
+            path
+        })
+        .collect();
+    // Whatever is left to another run is taken from the weights.
+    let mixed = |paths: [&PathBuf; 3], out: &Path| {
+        let mut eval = poescope();
+        eval.args(["eval", "--horizon", "5"])
+            .arg("--data")
+            .arg(&bench.data);
+        for path in paths {
+            eval.arg("--model").arg(path);
+        }
+        answer(eval.arg("--out").arg(out))
+    };
+    let out = bench.out("mixed");
+    let same = mixed([&bench.models[0], &bench.models[1], &packed[2]], &out);
+    assert_eq!(same, said);
+    assert!(results(&out) == results(&whole));
+    assert_eq!(score_files(&out).len(), 2);
+
+    // The same tables where neither weights nor episodes are at hand; frames cannot be drawn.
+    fs::remove_file(&bench.data).unwrap();
+    bench
+        .models
+        .iter()
+        .for_each(|model| fs::remove_dir_all(model).unwrap());
+    let alone = |options: &[&str]| {
+        let mut eval = poescope();
+        eval.args(["eval", "--horizon", "5"]).args(options);
+        eval.args(packed.iter().flat_map(|path| [Path::new("--model"), path]));
+        eval.output().unwrap()
+    };
+    let out = bench.out("alone");
+    let output = alone(&["--out", out.to_str().unwrap()]);
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), said);
+    let mut expected = results(&whole);
+    expected.retain(|(name, _)| !name.starts_with("strips"));
+    assert!(results(&out) == expected);
+    for (options, why) in [
+        (
+            vec!["--context", "3"],
+            "v.jsonl.zst: scores of 4 images seen",
+        ),
+        (
+            vec!["--state", "alpha=vision:0"],
+            "no scores under `alpha=vision:0`",
+        ),
+        (vec!["--data", "."], "no .mcap file in this folder"),
+        (vec!["--fit", "."], "name the checkpoint folder instead"),
+    ] {
+        let output = alone(&options);
+        let complaint = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            !output.status.success() && complaint.contains(why),
+            "{options:?}: {complaint}"
+        );
+    }
+    // Nor is half of it the whole.
+    let scores = zstd::decode_all(&*fs::read(&packed[1]).unwrap()).unwrap();
+    let lines: Vec<&[u8]> = scores.split_inclusive(|&byte| byte == b'\n').collect();
+    fs::write(
+        &packed[1],
+        zstd::encode_all(&*lines[..9].concat(), 3).unwrap(),
+    )
+    .unwrap();
+    let complaint = String::from_utf8(alone(&[]).stderr).unwrap();
+    assert!(
+        complaint.contains("12 of 20 episodes are not scored yet"),
+        "{complaint}"
+    );
 }
 
 #[test]
@@ -168,7 +283,7 @@ fn a_shard_leaves_the_files_of_others_alone() {
     let out = bench.out("out");
     answer(bench.eval(&["--shard", "1/2"]).arg("--out").arg(&out));
     // The other one is writing a line.
-    let other = out.join("scores-1-of-2.jsonl");
+    let other = score_file(&out, "vhp");
     let mut text = fs::read_to_string(&other).unwrap();
     text.truncate(text.len() - 40);
     fs::write(&other, &text).unwrap();
@@ -240,16 +355,20 @@ fn tables_say_the_same_in_every_format() {
     assert_eq!(shares.len(), 4, "{contact:?}");
     assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-5);
     // Shapley values add up to what all sensors save over none, episode by episode.
-    let scores = fs::read_to_string(out.join("scores.jsonl")).unwrap();
-    for line in scores.lines().skip(1) {
-        let episode: Value = serde_json::from_str(line).unwrap();
-        let subjects = &episode["scores"]["subjects"];
-        let credit = &subjects[2]["credit"];
+    let credits = |model: &str| -> Vec<Value> {
+        let scores = fs::read_to_string(score_file(&out, model)).unwrap();
+        let credit = |line: &str| {
+            let episode: Value = serde_json::from_str(line).unwrap();
+            episode["scores"]["subjects"][0]["credit"].clone()
+        };
+        scores.lines().skip(1).map(credit).collect()
+    };
+    for credit in credits("v-h-p") {
         let parts = credit["squared_error"].as_array().unwrap().iter();
         let sum: f64 = parts.map(|part| part.as_f64().unwrap()).sum();
         assert!((sum - credit["squared_error_gain"].as_f64().unwrap()).abs() < 1e-9);
-        assert!(subjects[0]["credit"].is_null());
     }
+    assert!(credits("v").iter().all(Value::is_null));
 }
 
 #[test]

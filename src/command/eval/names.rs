@@ -1,7 +1,5 @@
 //! What the models are called: by name, by recipe where there are several, by seed within one.
 
-use std::path::{Path, PathBuf};
-
 use serde_json::Value;
 
 use crate::eval::score::Candidate;
@@ -74,12 +72,9 @@ impl Recipe {
         })
     }
 
-    /// What to call it: the shortest words first, the surest last.
-    fn words(&self, folder: &Path) -> [String; 4] {
-        let path = folder.display().to_string();
-        let own = folder
-            .file_name()
-            .map_or_else(|| path.clone(), |name| name.to_string_lossy().into_owned());
+    /// What to call it, of a folder and its whole path: the shortest words first, the surest last.
+    fn words(&self, [own, path]: &[String; 2]) -> [String; 4] {
+        let [own, path] = [own.clone(), path.clone()];
         let Some(preset) = self.preset() else {
             return [own.clone(), own.clone(), own, path];
         };
@@ -91,8 +86,8 @@ impl Recipe {
     }
 }
 
-/// Names the candidates; each has its recipe and folder.
-pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[PathBuf]) {
+/// Names the candidates; each has its recipe, and its folder's name and path.
+pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[[String; 2]]) {
     // The first candidate of each recipe.
     let mut kinds: Vec<usize> = Vec::new();
     for (i, recipe) in recipes.iter().enumerate() {
@@ -139,9 +134,6 @@ pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[
 #[expect(clippy::unwrap_used, reason = "a test may stop here")]
 mod tests {
     use super::*;
-    use crate::model::Model;
-    use crate::model::inspect::Inspector;
-    use candle_core::Device;
     use serde_json::json;
 
     /// Labels of `(model, preset, updates, folder)`, the first of them changed. What a folder lies in is what it was trained on.
@@ -150,7 +142,6 @@ mod tests {
         let mut candidates = Vec::new();
         for (i, &(name, preset, updates, folder)) in runs.iter().enumerate() {
             let mut config = Config::preset(name, preset).unwrap();
-            config.hidden = 8;
             config.training.error_weights = vec![1.0; i % 2];
             if i == 0 {
                 change(&mut config);
@@ -158,19 +149,18 @@ mod tests {
             let data = folder.split_once('/').map(|(data, _)| data);
             let report = json!({ "updates": updates, "data": data, "data_hash": data });
             recipes.push(Recipe::of(&config, &report));
-            config.training.error_weights.clear();
             candidates.push(Candidate {
                 label: String::new(),
                 recipe: String::new(),
                 seed: Some(i as u64),
-                hash: String::new(),
+                config,
                 contact_newtons: None,
-                inspector: Inspector::new(Model::new(config, 0, &Device::Cpu).unwrap()).unwrap(),
-                probe: None,
                 regressors: None,
             });
         }
-        let folders: Vec<PathBuf> = runs.iter().map(|run| run.3.into()).collect();
+        let last = |path: &str| path.rsplit('/').next().unwrap().to_owned();
+        let folders = runs.iter().map(|run| [last(run.3), run.3.to_owned()]);
+        let folders: Vec<[String; 2]> = folders.collect();
         name(&mut candidates, &recipes, &folders);
         candidates.into_iter().map(|c| c.label).collect()
     }

@@ -22,7 +22,7 @@ pub fn subjects(
     for setting in &settings {
         let before = subjects.len();
         for (candidate, model) in candidates.iter().enumerate() {
-            let config = &model.inspector.model().config;
+            let config = &model.config;
             if !setting.applies_to(config) {
                 continue;
             }

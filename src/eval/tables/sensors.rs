@@ -17,7 +17,7 @@ pub(super) fn shapley(contest: &Contest, all: &[Placed<'_>]) -> Table {
             let Some(credit) = &scores.credit else {
                 continue;
             };
-            let experts = &contest.candidate(subject).inspector.model().config.experts;
+            let experts = &contest.candidate(subject).config.experts;
             rows.extend(
                 experts
                     .iter()

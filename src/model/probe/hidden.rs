@@ -5,6 +5,7 @@ use candle_nn::{AdamW, Optimizer, ParamsAdamW};
 use rand::seq::SliceRandom;
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 use super::{Linear, Pairs};
 
@@ -20,7 +21,7 @@ const UPDATES: [usize; 2] = [1500, 4000];
 const RATE: f64 = 3e-3;
 
 /// `W₂ relu(W₁ x + b₁) + b₂`.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hidden {
     /// W₁ and b₁.
     pub first: Linear,

@@ -1,11 +1,12 @@
 //! Least squares: `y = W x + b`.
 
 use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
 
 use super::Pairs;
 
 /// An affine map.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Linear {
     /// W, `(outputs, inputs)` row major.
     pub weight: Vec<f32>,

@@ -4,13 +4,14 @@
 use std::path::Path;
 
 use candle_core::{Device, Result, Tensor};
+use serde::{Deserialize, Serialize};
 
 use super::{Hidden, Linear, Pairs, numbers};
 use crate::model::checkpoint::{CheckpointError, read_tensors};
 use crate::model::probe::hidden::UNITS;
 
 /// Least squares and the network, fitted on the same pairs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Readers {
     /// Least squares.
     pub linear: Linear,
@@ -35,7 +36,7 @@ impl Readers {
 }
 
 /// Of the two kinds of beliefs.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Regressors {
     /// For beliefs that saw every sensor.
     pub filtered: Readers,

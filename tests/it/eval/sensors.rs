@@ -6,7 +6,7 @@ use poescope::model::checkpoint::PROBE;
 use poescope::model::probe::Probe;
 use serde_json::Value;
 
-use super::{Bench, csv};
+use super::{Bench, csv, score_file};
 use crate::common::answer;
 
 const SENSORS: [&str; 3] = ["vision", "haptic", "proprio"];
@@ -67,7 +67,7 @@ fn shapley_values_are_those_of_the_sets_scored_one_by_one() {
         );
     }
     // Those of the position's likelihood add up to what all sensors gain over none, episode by episode.
-    let scores = fs::read_to_string(out.join("scores.jsonl")).unwrap();
+    let scores = fs::read_to_string(score_file(&out, "v-h-p")).unwrap();
     for (place, line) in scores.lines().skip(1).enumerate() {
         let line: Value = serde_json::from_str(line).unwrap();
         let gain = line["scores"]["subjects"][0]["credit"]["nll_gain"].as_f64();

@@ -1,0 +1,101 @@
+//! Pose regressors, fitted anew.
+
+use std::collections::HashSet;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, bail};
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+
+use super::entrants::Entrant;
+use super::odd;
+use crate::data::{Dataset, Role};
+use crate::episode::{EpisodeSource, Split};
+use crate::eval::protocol::Protocol;
+use crate::eval::regression;
+use crate::eval::score::{Candidate, Scorer};
+use crate::model::inspect::Inspector;
+use crate::model::probe::Regressors;
+
+/// What pose regressors are fitted anew on.
+pub struct Fit<'a> {
+    /// Its training split is taken, for each model as its own training cut it.
+    pub data: &'a Path,
+    /// Where it has its roles.
+    pub topics: &'a [(Role, String)],
+    /// How predicted beliefs come about.
+    pub protocol: Protocol,
+    /// Episodes that are scored, as [`Dataset::origin`] names them.
+    pub never: HashSet<(&'a str, usize)>,
+    /// Whether to stop.
+    pub stop: &'a AtomicBool,
+}
+
+impl Fit<'_> {
+    /// Fits those of each candidate.
+    pub fn each(&self, candidates: &mut [Candidate], entrants: &[Entrant]) -> anyhow::Result<()> {
+        let weightless = entrants.iter().find(|entrant| entrant.scorer.is_none());
+        if let Some(Entrant { path, .. }) = weightless {
+            bail!(
+                "--fit: {} has scores alone; name the checkpoint folder instead",
+                path.display()
+            );
+        }
+        let dataset = Dataset::open_with(self.data, self.topics)?;
+        for (candidate, entrant) in candidates.iter_mut().zip(entrants) {
+            let Some(scorer) = &entrant.scorer else {
+                continue;
+            };
+            let splits = dataset.splits(entrant.about.split_seed()).into_iter();
+            let own = |(i, split)| (split == Split::Train).then_some(i);
+            let train: Vec<usize> = splits.enumerate().filter_map(own).collect();
+            let label = candidate.label.clone();
+            candidate.regressors = Some(self.one(scorer, label, &dataset, train)?);
+        }
+        Ok(())
+    }
+
+    fn one(
+        &self,
+        scorer: &Scorer,
+        label: String,
+        dataset: &Dataset,
+        train: Vec<usize>,
+    ) -> anyhow::Result<Regressors> {
+        let data = self.data.display();
+        let scored = |i: &&usize| dataset.origin(**i).is_some_and(|o| self.never.contains(&o));
+        if let Some(&index) = train.iter().find(scored) {
+            let id = &dataset.metas()[index].id;
+            bail!(
+                "--fit {data}: episode `{id}` of its split `train` is one that is scored; score another --split"
+            );
+        }
+        let style = ProgressStyle::with_template("fitting {bar:30} {pos}/{len} episodes, {msg}")?;
+        let bar = ProgressBar::new(train.len() as u64).with_style(style);
+        bar.set_message(label);
+        let model = scorer.inspector.model();
+        let layout = model.config.layout();
+        let episodes = train.into_par_iter().map(|index| {
+            if self.stop.load(Ordering::Relaxed) {
+                bail!("stopped");
+            }
+            bar.inc(1);
+            let episode = dataset
+                .load(index, layout)
+                .map_err(|error| error.to_string());
+            let sound = episode.and_then(|episode| odd(&episode).map_or(Ok(episode), Err));
+            if let Err(why) = &sound {
+                bar.suspend(|| eprintln!("left out of the fit: {why}"));
+            }
+            Ok(sound.ok().map(Arc::new))
+        });
+        let latents = regression::latents(&Inspector::new(model)?, episodes, self.protocol)?;
+        bar.finish_and_clear();
+        let too_few = "no object pose is recorded in its split `train`, or in too few images";
+        latents
+            .fit()?
+            .with_context(|| format!("--fit {data}: {too_few}"))
+    }
+}
