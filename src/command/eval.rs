@@ -3,28 +3,28 @@
 mod entrants;
 mod figures;
 mod fit;
+mod ground;
 mod ledger;
 mod names;
 mod scores;
 mod settings;
 
-use std::path::Path;
 use std::sync::atomic::Ordering;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use self::entrants::Entrant;
 use self::fit::Fit;
+use self::ground::Ground;
 use self::ledger::{Joined, Ledger};
+use self::scores::{Line, Outcome};
 use super::{sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
-use crate::data::Dataset;
-use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::score::Contest;
-use crate::eval::summary::{Scope, summarise};
+use crate::eval::summary::summarise;
 use crate::eval::{markdown, tables};
 use crate::export::table::{write_csv, write_parquet};
 use crate::model::checkpoint::write_atomic;
@@ -35,88 +35,102 @@ const CHUNK: usize = 16;
 /// Runs it.
 pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     let stop = super::stop_on_signals()?;
-    let path = sample::data(args.data.as_ref())?;
     let models = if args.model.is_empty() {
-        sample::models(&path)?
+        sample::models(&sample::data(args.data.as_ref())?)?
     } else {
         args.model.clone()
     };
-    let mut entrants = entrants::open(&models)?;
+    let entrants = entrants::open(&models)?;
     let mut contest = contest(args, &entrants)?;
-    let (dataset, mut scope, wanted) = scope(args, &path, &entrants)?;
+    let mut ground = Ground::of(args, &entrants)?;
     // A shard keeps scores alone, which no regressor has a part in.
     if let (Some(data), None) = (&args.fit, args.shard) {
-        let origin = |&i: &usize| dataset.as_ref().and_then(|dataset| dataset.origin(i));
         let fit = Fit {
             data,
             topics: &args.mapping.topics,
             protocol: contest.protocol,
-            never: wanted.iter().filter_map(origin).collect(),
+            never: ground.origins(),
             stop: &stop,
         };
         fit.each(&mut contest.candidates, &entrants)?;
     }
-    let mut ledger = Ledger::open(args, &scope, &contest, &mut entrants)?;
+    if let Some(out) = &args.out {
+        std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
+    }
+    let mut ledger = Ledger::open(args, &ground, &contest, &entrants)?;
     let own: Vec<usize> = match args.shard {
-        Some((i, n)) => wanted.into_iter().skip(i - 1).step_by(n).collect(),
-        None => wanted,
+        Some((i, n)) => ground
+            .episodes
+            .iter()
+            .copied()
+            .skip(i - 1)
+            .step_by(n)
+            .collect(),
+        None => ground.episodes.clone(),
     };
     let lacks = |index: &usize| !ledger.lacking(*index).is_empty();
     let left: Vec<usize> = own.iter().copied().filter(lacks).collect();
-    if let (true, Some(&first)) = (args.merge || dataset.is_none(), left.first()) {
-        let id = dataset.as_ref().map(|dataset| &dataset.metas()[first].id);
+    for (candidate, entrant) in entrants.iter().enumerate() {
+        let lacks = |index: &&usize| ledger.lacking(**index).contains(&candidate);
+        let missing = own.iter().filter(lacks).count();
+        if entrant.scorer().is_none() && missing > 0 {
+            bail!(
+                "{} lacks {missing} of {} episodes; name the checkpoint folder instead, or finish its run",
+                entrant.path.display(),
+                own.len()
+            );
+        }
+    }
+    if let (true, Some(&first)) = (args.merge, left.first()) {
         bail!(
-            "{} of {} episodes are not scored yet{}; {}",
+            "{} of {} episodes are not scored yet, {} among them; run their shards, or leave out --merge",
             left.len(),
             own.len(),
-            id.map_or_else(String::new, |id| format!(", `{id}` among them")),
-            if args.merge {
-                "run their shards, or leave out --merge"
-            } else {
-                "name the dataset by --data, and the checkpoint folders"
-            }
+            ground.name(first)
         );
     }
-    if let Some(dataset) = &dataset {
-        let bar = ProgressBar::new(own.len() as u64);
-        bar.set_style(ProgressStyle::with_template(
-            "scoring {bar:30} {pos}/{len} episodes, {eta} left",
-        )?);
-        bar.inc((own.len() - left.len()) as u64);
-        for chunk in left.chunks(CHUNK) {
-            if stop.load(Ordering::Relaxed) {
-                bar.finish_and_clear();
-                bail!(match &args.out {
-                    Some(_) => "stopped; go on with the same command",
-                    None => "stopped",
-                });
-            }
-            let each = chunk.par_iter().map(|&index| {
-                let lacking = ledger.lacking(index);
-                ledger::one(&contest, &entrants, &lacking, dataset, (index, &path))
+    let bar = ProgressBar::new(own.len() as u64);
+    bar.set_style(ProgressStyle::with_template(
+        "scoring {bar:30} {pos}/{len} episodes, {eta} left",
+    )?);
+    bar.inc((own.len() - left.len()) as u64);
+    for chunk in left.chunks(CHUNK) {
+        if stop.load(Ordering::Relaxed) {
+            bar.finish_and_clear();
+            bail!(match &args.out {
+                Some(_) => "stopped; go on with the same command",
+                None => "stopped",
             });
-            for lines in each.collect::<anyhow::Result<Vec<_>>>()? {
-                let why = lines.iter().find_map(|(_, line)| line.left_out.as_ref());
-                if let Some(why) = why {
+        }
+        let each = chunk.par_iter().map(|&index| {
+            let lacking = ledger.lacking(index);
+            let outcomes = ground.score(&contest, &entrants, &lacking, index)?;
+            Ok(lacking
+                .into_iter()
+                .zip(outcomes)
+                .map(move |(candidate, outcome)| (candidate, Line { index, outcome })))
+        });
+        for lines in each.collect::<anyhow::Result<Vec<_>>>()? {
+            for (place, (candidate, line)) in lines.enumerate() {
+                if let (0, Outcome::LeftOut(why)) = (place, &line.outcome) {
                     bar.suspend(|| eprintln!("left out: {why}"));
                 }
-                ledger.push(lines)?;
+                ledger.push(candidate, line)?;
             }
-            bar.inc(chunk.len() as u64);
         }
-        bar.finish_and_clear();
+        bar.inc(chunk.len() as u64);
     }
+    bar.finish_and_clear();
     if args.shard.is_some() {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
     let joined = ledger.joined(&contest, &own);
-    scope.left_out.clone_from(&joined.left_out);
+    ground.scope.left_out.clone_from(&joined.left_out);
     let scored = Scored {
         contest: &contest,
         joined: &joined,
-        scope: &scope,
-        dataset: dataset.as_ref(),
+        ground: &ground,
         entrants: &entrants,
     };
     conclude(args, &scored)
@@ -147,88 +161,11 @@ fn contest(args: &EvalArgs, entrants: &[Entrant]) -> anyhow::Result<Contest> {
     })
 }
 
-/// The dataset, what is scored of it, and those episodes. Scores say themselves what they are of, so that they can be
-/// summed up where the episodes are not at hand.
-fn scope(
-    args: &EvalArgs,
-    path: &Path,
-    entrants: &[Entrant],
-) -> anyhow::Result<(Option<Dataset>, Scope, Vec<usize>)> {
-    let published = entrants.iter().all(|entrant| entrant.scorer.is_none());
-    if let (true, None, Some(scores)) = (published, &args.data, &entrants[0].scores) {
-        let head = scores.head();
-        let scope = Scope {
-            data: head.data.clone(),
-            data_hash: head.data_hash.clone(),
-            split: head.split.clone(),
-            left_out: Vec::new(),
-        };
-        return Ok((None, scope, scores.indices().collect()));
-    }
-    let dataset = Dataset::open_with(path, &args.mapping.topics)?;
-    let (split, wanted) = wanted(args, &dataset, entrants)?;
-    let scope = Scope {
-        data: dataset.name().to_owned(),
-        data_hash: dataset.data_hash().to_owned(),
-        split: split.name().to_owned(),
-        left_out: Vec::new(),
-    };
-    Ok((Some(dataset), scope, wanted))
-}
-
-/// The split that is scored, and its episodes. Where the dataset names no `val`, every training on it has cut its own by
-/// its seed: episodes that one model has not seen another was trained on, so such models are refused together.
-fn wanted(
-    args: &EvalArgs,
-    dataset: &Dataset,
-    entrants: &[Entrant],
-) -> anyhow::Result<(Split, Vec<usize>)> {
-    let splits = |entrant: &Entrant| dataset.splits(entrant.about.split_seed());
-    let trained_on_it = |entrant: &&Entrant| {
-        let hash = entrant.about.report["data_hash"].as_str();
-        hash.is_none_or(|hash| hash == dataset.data_hash())
-    };
-    let cutters: Vec<&Entrant> = entrants.iter().filter(trained_on_it).collect();
-    let cutter = *cutters.first().unwrap_or(&&entrants[0]);
-    let first = splits(cutter);
-    let split = args.split.unwrap_or_else(|| {
-        let has = |split: &Split| first.contains(split);
-        let known = [Split::Test, Split::Val].into_iter().find(has);
-        known.unwrap_or(Split::Test)
-    });
-    let of_split = |splits: &[Split]| -> Vec<usize> {
-        let own = splits.iter().enumerate().filter(|(_, own)| **own == split);
-        own.map(|(index, _)| index).collect()
-    };
-    let wanted = of_split(&first);
-    for entrant in cutters.into_iter().skip(1) {
-        if of_split(&splits(entrant)) != wanted {
-            bail!(
-                "{} names no split `val`: {} and {} have each cut their own from `train`, by different seeds; evaluate \
-                 them apart, or on a dataset that names its splits",
-                dataset.name(),
-                cutter.path.display(),
-                entrant.path.display()
-            );
-        }
-    }
-    Ok((split, wanted))
-}
-
-/// Why an episode says nothing about a model: what was odd when it was recorded, as training has it.
-pub fn odd(episode: &Episode) -> Option<String> {
-    let flag = episode.flags.first()?;
-    let id = &episode.meta.id;
-    Some(format!("episode `{id}`: {}: {}", flag.topic, flag.what))
-}
-
 /// Scores, and what they are of.
 struct Scored<'a> {
     contest: &'a Contest,
     joined: &'a Joined,
-    scope: &'a Scope,
-    /// None where scores alone were named.
-    dataset: Option<&'a Dataset>,
+    ground: &'a Ground,
     entrants: &'a [Entrant],
 }
 
@@ -237,7 +174,7 @@ fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
     let Scored {
         contest,
         joined,
-        scope,
+        ground: Ground { scope, .. },
         ..
     } = *scored;
     let Joined { indices, all, .. } = joined;

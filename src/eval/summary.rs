@@ -17,6 +17,8 @@ use crate::modality::Expert;
 pub struct Quality {
     /// The row.
     pub subject: String,
+    /// What tells its recipe from the others'; empty where all have the same, and for the trivial predictors.
+    pub recipe: String,
     /// Root of the mean squared error per frame, a sum over pixels, over all frames.
     pub rmse: f64,
     /// Of each episode's mean over the horizon.
@@ -111,6 +113,7 @@ pub fn summarise(
             .map(|scores| &scores.frames)
             .collect();
         quality.extend(rate(&subject.label, &scores).map(|quality| Quality {
+            recipe: contest.candidate(subject).recipe.clone(),
             ahead: ahead(place, all),
             ..quality
         }));
@@ -167,6 +170,7 @@ fn rate(subject: &str, scores: &[&FrameScores]) -> Option<Quality> {
     };
     Some(Quality {
         subject: subject.to_owned(),
+        recipe: String::new(),
         rmse: whole(|s| &s.squared_error)?.mean.sqrt(),
         ssim: whole(|s| &s.ssim)?,
         psnr_db: whole(|s| &s.psnr_db)?,

@@ -134,7 +134,7 @@ impl Config {
             );
         }
         let sizes = [
-            ("frame_stack", self.frame_stack + 1),
+            ("frame_stack", self.frame_stack.saturating_add(1)),
             ("window", self.window),
             ("latent", self.latent),
             ("hidden", self.hidden),

@@ -101,15 +101,37 @@ fn score_files(out: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// That of a model.
+/// The first of a model.
 fn score_file(out: &Path, model: &str) -> PathBuf {
     let start = format!("{model}-");
     let of = |path: &PathBuf| {
         let name = path.file_name().unwrap().to_str().unwrap();
-        // After the model there is the hash, eight digits long.
-        name.starts_with(&start) && name[start.len()..].split_once(['-', '.']).unwrap().0.len() == 8
+        // After the model there is the hash, sixteen digits long.
+        let hash = name
+            .strip_prefix(&start)
+            .and_then(|rest| rest.split_once(['-', '.']));
+        hash.is_some_and(|(hash, _)| hash.len() == 16)
     };
     score_files(out).into_iter().find(of).unwrap()
+}
+
+/// Packs the lines of a score file that `keep` wants.
+fn pack(scores: &Path, packed: &Path, keep: fn(usize) -> bool) {
+    let scores = fs::read(scores).unwrap();
+    let lines = scores.split_inclusive(|&byte| byte == b'\n').enumerate();
+    let kept: Vec<&[u8]> = lines
+        .filter(|(i, _)| keep(*i))
+        .map(|(_, line)| line)
+        .collect();
+    fs::write(packed, zstd::encode_all(&*kept.concat(), 3).unwrap()).unwrap();
+}
+
+/// What a command that must fail complains of.
+fn complaint(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success(), "{said}");
+    said
 }
 
 #[test]
@@ -150,6 +172,16 @@ fn shards_and_interrupted_runs_come_to_the_same_bytes() {
     }
     assert_eq!(fs::read_to_string(whole.join("tables.md")).unwrap(), said);
     assert!(results(&shards) == expected);
+    // What shards have left is in one file, for whom it is handed to.
+    let merged = fs::read_to_string(
+        shards
+            .join("scores")
+            .join(score_file(&whole, "vhp").file_name().unwrap()),
+    );
+    assert_eq!(
+        merged.unwrap(),
+        fs::read_to_string(score_file(&whole, "vhp")).unwrap()
+    );
 
     // A run that was killed while it wrote: one model done, of another the head, some lines, and half of one.
     let of_vhp = score_file(&whole, "vhp");
@@ -167,20 +199,19 @@ fn shards_and_interrupted_runs_come_to_the_same_bytes() {
     assert_eq!(fs::read_to_string(place(&of_vhp)).unwrap(), scores);
 
     // Scores of another protocol or under other settings do not mix with these.
-    let refused = |options: &[&str], why: &str| {
-        let mut eval = bench.eval(options);
-        let output = eval.arg("--out").arg(&whole).output().unwrap();
-        let complaint = String::from_utf8(output.stderr).unwrap();
-        assert!(complaint.contains(why), "{complaint}");
-    };
-    refused(
-        &["--context", "3"],
-        "holds scores of 4 images seen and 5 predicted, not of 3 images seen and 5 predicted",
-    );
-    refused(
-        &["--state", "alpha=vision:0.5"],
-        "holds scores under other settings; choose another --out",
-    );
+    for (options, why) in [
+        (
+            ["--context", "3"],
+            "holds scores of 4 images seen and 5 predicted; give --context 4 --horizon 5",
+        ),
+        (
+            ["--state", "alpha=vision:0.5"],
+            "holds scores under other settings, or choose another --out",
+        ),
+    ] {
+        let said = complaint(bench.eval(&options).arg("--out").arg(&whole));
+        assert!(said.contains(why), "{said}");
+    }
     // A model that was trained further is scored anew, and nothing of what it was before stays in the tables.
     let model = Model::new(three_experts(), 8, &Device::Cpu).unwrap();
     checkpoint::save(&model, &bench.models[2], DType::F16, None).unwrap();
@@ -199,31 +230,46 @@ fn scores_stand_for_models_without_their_weights() {
     let bench = Bench::new();
     let whole = bench.out("whole");
     let said = answer(bench.eval(&[]).arg("--out").arg(&whole));
-    let packed: Vec<PathBuf> = ["v", "vhp", "v-h-p"]
-        .into_iter()
-        .map(|model| {
-            let path = bench.out(&format!("{model}.jsonl.zst"));
-            let scores = fs::read(score_file(&whole, model)).unwrap();
-            fs::write(&path, zstd::encode_all(&*scores, 3).unwrap()).unwrap();
-            path
-        })
-        .collect();
-    // Whatever is left to another run is taken from the weights.
-    let mixed = |paths: [&PathBuf; 3], out: &Path| {
+    let names = ["v", "vhp", "v-h-p"];
+    let packed = names.map(|model| {
+        let path = bench.out(&format!("{model}.jsonl.zst"));
+        pack(&score_file(&whole, model), &path, |_| true);
+        path
+    });
+    let eval = |models: &[&PathBuf], options: &[&str]| {
         let mut eval = poescope();
-        eval.args(["eval", "--horizon", "5"])
-            .arg("--data")
-            .arg(&bench.data);
-        for path in paths {
-            eval.arg("--model").arg(path);
-        }
-        answer(eval.arg("--out").arg(out))
+        // Nothing of the samples is here.
+        eval.current_dir(bench.folder.path())
+            .arg("eval")
+            .args(options);
+        eval.args(
+            models
+                .iter()
+                .flat_map(|model| [Path::new("--model"), model]),
+        );
+        eval
     };
+    let [v, vhp, v_h_p] = &packed;
+    // One of them from its scores, also where the dataset has another name by now.
+    let renamed = bench.out("renamed.mcap");
+    fs::copy(&bench.data, &renamed).unwrap();
     let out = bench.out("mixed");
-    let same = mixed([&bench.models[0], &bench.models[1], &packed[2]], &out);
-    assert_eq!(same, said);
-    assert!(results(&out) == results(&whole));
+    let mut mixed = eval(
+        &[&bench.models[0], &bench.models[1], v_h_p],
+        &["--horizon", "5"],
+    );
+    answer(mixed.arg("--data").arg(&renamed).arg("--out").arg(&out));
+    let tables = |out: &Path| fs::read_to_string(out.join("tables.md")).unwrap();
+    assert_eq!(tables(&out), said);
     assert_eq!(score_files(&out).len(), 2);
+    // A command that fails leaves no scores, which would stand in the way of the next.
+    let out = bench.out("failed");
+    let mut wrong = eval(&[&bench.models[0], v_h_p], &["--horizon", "4"]);
+    let wrong = wrong.arg("--data").arg(&bench.data).arg("--out").arg(&out);
+    assert!(
+        complaint(wrong).contains("v-h-p.jsonl.zst: scores of 4 images seen and 5 predicted; give")
+    );
+    assert!(!out.join("scores").exists());
 
     // The same tables where neither weights nor episodes are at hand; frames cannot be drawn.
     fs::remove_file(&bench.data).unwrap();
@@ -231,50 +277,118 @@ fn scores_stand_for_models_without_their_weights() {
         .models
         .iter()
         .for_each(|model| fs::remove_dir_all(model).unwrap());
-    let alone = |options: &[&str]| {
-        let mut eval = poescope();
-        eval.args(["eval", "--horizon", "5"]).args(options);
-        eval.args(packed.iter().flat_map(|path| [Path::new("--model"), path]));
-        eval.output().unwrap()
-    };
+    let all = [v, vhp, v_h_p];
     let out = bench.out("alone");
-    let output = alone(&["--out", out.to_str().unwrap()]);
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), said);
+    let mut alone = eval(&all, &["--horizon", "5"]);
+    assert_eq!(answer(alone.arg("--out").arg(&out)), said);
     let mut expected = results(&whole);
     expected.retain(|(name, _)| !name.starts_with("strips"));
     assert!(results(&out) == expected);
+    let other = simulated(
+        bench.out("other.mcap"),
+        3,
+        &["--steps", "9", "--split", "test"],
+    );
+    let other = other.to_str().unwrap();
     for (options, why) in [
         (
-            vec!["--context", "3"],
-            "v.jsonl.zst: scores of 4 images seen",
+            ["--context", "4"],
+            "v.jsonl.zst: scores of 4 images seen and 5 predicted; give --context 4 --horizon 5",
         ),
         (
-            vec!["--state", "alpha=vision:0"],
-            "no scores under `alpha=vision:0`",
+            ["--state", "alpha=vision:0"],
+            "no scores under `alpha=vision:0`; name its checkpoint folder",
         ),
-        (vec!["--data", "."], "no .mcap file in this folder"),
-        (vec!["--fit", "."], "name the checkpoint folder instead"),
+        (["--data", other], "scores of test.mcap ("),
+        (
+            ["--split", "val"],
+            "scores of split `test`, not of `val`; give --split test",
+        ),
+        (["--shard", "1/2"], "--shard"),
+        (["--fit", other], "name the checkpoint folder instead"),
     ] {
-        let output = alone(&options);
-        let complaint = String::from_utf8(output.stderr).unwrap();
+        let mut command = eval(&all, &options);
+        if options[0] != "--context" {
+            command.args(["--horizon", "5"]);
+        }
+        let said = complaint(&mut command);
+        assert!(said.contains(why), "{options:?}: {said}");
+    }
+    // Nor is half of it the whole, whether it is named first or last.
+    pack(&score_file(&whole, "vhp"), vhp, |line| line < 9);
+    for models in [[vhp, v], [v, vhp]] {
+        let said = complaint(&mut eval(&models, &["--horizon", "5"]));
         assert!(
-            !output.status.success() && complaint.contains(why),
-            "{options:?}: {complaint}"
+            said.contains("vhp.jsonl.zst lacks 12 of 20 episodes"),
+            "{said}"
         );
     }
-    // Nor is half of it the whole.
-    let scores = zstd::decode_all(&*fs::read(&packed[1]).unwrap()).unwrap();
-    let lines: Vec<&[u8]> = scores.split_inclusive(|&byte| byte == b'\n').collect();
-    fs::write(
-        &packed[1],
-        zstd::encode_all(&*lines[..9].concat(), 3).unwrap(),
-    )
-    .unwrap();
-    let complaint = String::from_utf8(alone(&[]).stderr).unwrap();
-    assert!(
-        complaint.contains("12 of 20 episodes are not scored yet"),
-        "{complaint}"
-    );
+}
+
+#[test]
+fn damaged_score_files_are_refused_by_line() {
+    let mut bench = Bench::new();
+    bench.models.truncate(2);
+    let out = bench.out("out");
+    answer(bench.eval(&[]).arg("--out").arg(&out));
+    let path = score_file(&out, "vhp");
+    let scores = fs::read_to_string(&path).unwrap();
+    let damaged = |place: usize, damage: &dyn Fn(&mut Value)| {
+        let mut lines: Vec<String> = scores.lines().map(str::to_owned).collect();
+        let mut line = serde_json::from_str(&lines[place]).unwrap();
+        damage(&mut line);
+        lines[place] = line.to_string();
+        fs::write(&path, lines.join("\n") + "\n").unwrap();
+        let of_out = complaint(bench.eval(&[]).arg("--out").arg(&out));
+        let mut alone = poescope();
+        let alone = complaint(alone.args(["eval", "--horizon", "5", "--model"]).arg(&path));
+        assert_eq!(of_out, alone);
+        alone
+    };
+    let rows = |line: &mut Value| line["outcome"]["scores"]["subjects"].take();
+    let row = |change: fn(&mut Value)| {
+        move |line: &mut Value| change(&mut line["outcome"]["scores"]["subjects"][1])
+    };
+    for (place, damage, why) in [
+        (
+            0,
+            &(|head: &mut Value| head["scores"] = 9.into()) as &dyn Fn(&mut Value),
+            "of form 9",
+        ),
+        (
+            0,
+            &|head: &mut Value| head["model"]["config"]["latent"] = 0.into(),
+            "`latent`",
+        ),
+        (0, &|head: &mut Value| *head = 7.into(), "not a score file"),
+        (3, &|line: &mut Value| drop(rows(line)), "line 4 is damaged"),
+        (
+            3,
+            &|line: &mut Value| line["outcome"] = Value::Null,
+            "line 4 is damaged",
+        ),
+        (
+            5,
+            &row(|row| drop(row["frames"]["ssim"].as_array_mut().unwrap().pop())),
+            "line 6 is damaged",
+        ),
+        (
+            5,
+            &row(|row| row["filtered"][0] = 1e39.into()),
+            "line 6 is damaged",
+        ),
+        (
+            5,
+            &row(|row| drop(row["predicted"].as_array_mut().unwrap().pop())),
+            "line 6 is damaged",
+        ),
+    ] {
+        let said = damaged(place, damage);
+        assert!(
+            said.contains(why) && said.contains(path.to_str().unwrap()),
+            "{said}"
+        );
+    }
 }
 
 #[test]
@@ -359,7 +473,7 @@ fn tables_say_the_same_in_every_format() {
         let scores = fs::read_to_string(score_file(&out, model)).unwrap();
         let credit = |line: &str| {
             let episode: Value = serde_json::from_str(line).unwrap();
-            episode["scores"]["subjects"][0]["credit"].clone()
+            episode["outcome"]["scores"]["subjects"][0]["credit"].clone()
         };
         scores.lines().skip(1).map(credit).collect()
     };

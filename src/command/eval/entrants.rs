@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::names::{Recipe, name};
-use super::scores::ScoreFile;
+use super::scores::Scores;
 use crate::command::open;
 use crate::eval::regression;
 use crate::eval::score::{Candidate, Scorer};
@@ -24,10 +24,27 @@ pub struct Entrant {
     pub path: PathBuf,
     /// What tables and figures need of it.
     pub about: About,
+    /// Where its scores come from.
+    pub source: Source,
+}
+
+/// Where a model's scores come from.
+#[derive(Debug)]
+pub enum Source {
+    /// It is scored.
+    Weights(Box<Scorer>),
+    /// It was.
+    Scores(Scores),
+}
+
+impl Entrant {
     /// None where its weights are not at hand.
-    pub scorer: Option<Scorer>,
-    /// What it was scored before, where that was named.
-    pub scores: Option<ScoreFile>,
+    pub fn scorer(&self) -> Option<&Scorer> {
+        match &self.source {
+            Source::Weights(scorer) => Some(scorer),
+            Source::Scores(_) => None,
+        }
+    }
 }
 
 /// Everything but the weights: what a score file says of its model.
@@ -60,16 +77,10 @@ impl About {
 pub fn open(paths: &[PathBuf]) -> anyhow::Result<Vec<Entrant>> {
     let mut entrants: Vec<Entrant> = Vec::with_capacity(paths.len());
     for path in paths {
-        let entrant = if path.is_file() {
-            let scores = ScoreFile::published(path)?;
-            Entrant {
-                path: path.clone(),
-                about: scores.head().model.clone(),
-                scorer: None,
-                scores: Some(scores),
-            }
-        } else {
+        let entrant = if path.is_dir() {
             checkpoint(path)?
+        } else {
+            scores(path)?
         };
         if let Some(first) = entrants.first()
             && first.about.config.layout() != entrant.about.config.layout()
@@ -108,11 +119,34 @@ pub fn candidates(entrants: &[Entrant]) -> Vec<Candidate> {
     candidates
 }
 
+/// A model that was scored before.
+fn scores(path: &Path) -> anyhow::Result<Entrant> {
+    if !path.exists() {
+        bail!(
+            "{}: no such checkpoint folder or score file",
+            path.display()
+        );
+    }
+    let scores = Scores::read(path)?;
+    let scores = scores.with_context(|| format!("{}: no scores in it", path.display()))?;
+    Ok(Entrant {
+        path: path.to_owned(),
+        about: scores.head.model.clone(),
+        source: Source::Scores(scores),
+    })
+}
+
 /// A model with its weights.
 fn checkpoint(folder: &Path) -> anyhow::Result<Entrant> {
+    // A name also where it is called `.`.
+    let name = folder.canonicalize().ok();
+    let name = name.as_deref().and_then(Path::file_name);
+    let name = name.map_or_else(
+        || "model".into(),
+        |name| name.to_string_lossy().into_owned(),
+    );
     let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
     let config = model.config.clone();
-    let path = folder.display().to_string();
     let mean_frame = mean_frame(folder, config.frame_size)?;
     let bytes: Vec<u8> = mean_frame
         .iter()
@@ -121,9 +155,7 @@ fn checkpoint(folder: &Path) -> anyhow::Result<Entrant> {
     Ok(Entrant {
         path: folder.to_owned(),
         about: About {
-            folder: folder
-                .file_name()
-                .map_or(path, |name| name.to_string_lossy().into_owned()),
+            folder: name,
             hash,
             mean_frame: format!("{:08x}", crc32fast::hash(&bytes)),
             report: open::report(folder),
@@ -131,12 +163,11 @@ fn checkpoint(folder: &Path) -> anyhow::Result<Entrant> {
             regressors: regressors(&folder.join(PROBE), config.latent)?,
             config,
         },
-        scorer: Some(Scorer {
+        source: Source::Weights(Box::new(Scorer {
             inspector: Inspector::new(model)?,
             probe,
             mean_frame,
-        }),
-        scores: None,
+        })),
     })
 }
 
@@ -182,7 +213,8 @@ fn curve(folder: &Path) -> Vec<[f64; 2]> {
         let line: Value = serde_json::from_str(line).ok()?;
         let horizons = line["val"]["psnr_db"].as_array()?;
         let sum: f64 = horizons.iter().filter_map(Value::as_f64).sum();
-        Some([line["update"].as_f64()?, sum / horizons.len() as f64])
+        let mean = sum / horizons.len() as f64;
+        Some([line["update"].as_f64()?, mean]).filter(|_| mean.is_finite())
     };
     metrics.lines().filter_map(point).collect()
 }

@@ -6,6 +6,7 @@ use super::Scored;
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
 use crate::eval::prediction::open_loop;
+use crate::eval::score::Scorer;
 use crate::eval::setting::Setting;
 use crate::eval::summary::{Summary, extremes};
 use crate::export::figures::{self, Frames, Strip};
@@ -31,9 +32,10 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
     if let Some(plot) = figures::contact(summary) {
         plot.save(out, "contact")?;
     }
-    let Some((dataset, [first, second])) = scored.dataset.zip(rivals(scored)) else {
+    let Some((dataset, rivals)) = scored.ground.dataset().zip(rivals(scored)) else {
         return Ok(());
     };
+    let [first, second] = rivals.map(|(place, _)| place);
     let labels = [first, second].map(|place| contest.subjects[place].label.clone());
     let [worst, best] = extremes(all, [first, second], STRIPS);
     let title = format!(
@@ -44,7 +46,7 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
     for (episodes, [worse, other]) in [(worst, [0, 1]), (best, [1, 0])] {
         let against = format!("of {} against {}", labels[worse], labels[other]);
         for index in episodes {
-            strips.push(strip(scored, dataset, index, [first, second], &against)?);
+            strips.push(strip(scored, dataset, index, rivals, &against)?);
         }
     }
     if strips.is_empty() {
@@ -57,20 +59,24 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
 
 /// The rows the strips compare: `v` and `vhp` of one recipe as the paper does, else the first two models as trained.
 /// Their frames are decoded anew, so their weights must be at hand.
-fn rivals(scored: &Scored<'_>) -> Option<[usize; 2]> {
-    let Scored { contest, .. } = *scored;
-    let decodes = |i: &usize| {
-        let subject = &contest.subjects[*i];
-        subject.setting == Setting::default() && scored.entrants[subject.candidate].scorer.is_some()
+fn rivals<'a>(scored: &Scored<'a>) -> Option<[(usize, &'a Scorer); 2]> {
+    let Scored {
+        contest, entrants, ..
+    } = *scored;
+    let decodes = |place: usize| {
+        let subject = &contest.subjects[place];
+        let trained = subject.setting == Setting::default();
+        let scorer = entrants[subject.candidate].scorer()?;
+        trained.then_some((place, scorer))
     };
-    let trained: Vec<usize> = (0..contest.subjects.len()).filter(decodes).collect();
-    let candidate = |i: usize| contest.candidate(&contest.subjects[i]);
+    let trained: Vec<_> = (0..contest.subjects.len()).filter_map(decodes).collect();
+    let candidate = |place: usize| contest.candidate(&contest.subjects[place]);
     let of = |name: &'static str| {
-        let is = move |&i: &usize| candidate(i).model() == name;
+        let is = move |&(place, _): &(usize, &Scorer)| candidate(place).model() == name;
         trained.iter().copied().filter(is)
     };
     let alike = of("v").find_map(|v| {
-        let is = |&vhp: &usize| candidate(vhp).recipe == candidate(v).recipe;
+        let is = |&vhp: &(usize, &Scorer)| candidate(vhp.0).recipe == candidate(v.0).recipe;
         Some([v, of("vhp").find(is)?])
     });
     alike.or(Some([*trained.first()?, *trained.get(1)?]))
@@ -81,7 +87,7 @@ fn strip(
     scored: &Scored<'_>,
     dataset: &Dataset,
     place: usize,
-    rivals: [usize; 2],
+    rivals: [(usize, &Scorer); 2],
     against: &str,
 ) -> anyhow::Result<Strip> {
     let Scored { contest, .. } = *scored;
@@ -97,11 +103,8 @@ fn strip(
             .collect(),
     }];
     let mut errors = Vec::new();
-    for place in rivals {
+    for (place, scorer) in rivals {
         let subject = &contest.subjects[place];
-        let Some(scorer) = &scored.entrants[subject.candidate].scorer else {
-            continue;
-        };
         let pixels = open_loop(&scorer.inspector, &episode, protocol)?;
         let grey = |frame: &[f32]| frame.iter().map(|&p| (p * 255.0).round() as u8).collect();
         let size = layout.frame_size * layout.frame_size;

@@ -10,7 +10,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use super::entrants::Entrant;
-use super::odd;
+use super::ground::odd;
 use crate::data::{Dataset, Role};
 use crate::episode::{EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
@@ -36,7 +36,7 @@ pub struct Fit<'a> {
 impl Fit<'_> {
     /// Fits those of each candidate.
     pub fn each(&self, candidates: &mut [Candidate], entrants: &[Entrant]) -> anyhow::Result<()> {
-        let weightless = entrants.iter().find(|entrant| entrant.scorer.is_none());
+        let weightless = entrants.iter().find(|entrant| entrant.scorer().is_none());
         if let Some(Entrant { path, .. }) = weightless {
             bail!(
                 "--fit: {} has scores alone; name the checkpoint folder instead",
@@ -44,10 +44,8 @@ impl Fit<'_> {
             );
         }
         let dataset = Dataset::open_with(self.data, self.topics)?;
-        for (candidate, entrant) in candidates.iter_mut().zip(entrants) {
-            let Some(scorer) = &entrant.scorer else {
-                continue;
-            };
+        let scorers = entrants.iter().filter_map(|e| Some((e, e.scorer()?)));
+        for (candidate, (entrant, scorer)) in candidates.iter_mut().zip(scorers) {
             let splits = dataset.splits(entrant.about.split_seed()).into_iter();
             let own = |(i, split)| (split == Split::Train).then_some(i);
             let train: Vec<usize> = splits.enumerate().filter_map(own).collect();

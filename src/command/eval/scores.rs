@@ -1,22 +1,30 @@
-//! Score files: of each model one, a line an episode, so that a run that was stopped goes on, shards come together, and
-//! a model stands in later tables without being scored again, or without its weights.
+//! Score files: of each model one, a line an episode. It says what it is of and all that tables need but the weights, so
+//! that a model stands in later tables without being scored again.
 
 use std::collections::BTreeMap;
-use std::fs::{File, OpenOptions};
-use std::io::{BufRead, BufReader, Read, Write};
-use std::path::{Path, PathBuf};
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::Path;
 
 use anyhow::{Context, bail};
 use serde::{Deserialize, Serialize};
 
 use super::entrants::About;
 use crate::eval::protocol::Protocol;
-use crate::eval::score::EpisodeScores;
+use crate::eval::regression;
+use crate::eval::score::{EpisodeScores, FrameScores};
 use crate::eval::setting::Setting;
 
+/// The form of score files, counted up when what is scored or how it is written changes.
+pub const FORM: u32 = 1;
+/// Bytes of a line; that of an episode of 42 images in ten rows has 300,000.
+const MOST: u64 = 1 << 26;
+
 /// What the scores are of: the first line of a score file.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 pub struct Head {
+    /// [`FORM`].
+    pub scores: u32,
     /// The version that scored.
     pub poescope: String,
     /// The dataset's name.
@@ -25,6 +33,8 @@ pub struct Head {
     pub data_hash: String,
     /// The split.
     pub split: String,
+    /// Its episodes, by their places in the dataset: names need not be unique in a folder of files.
+    pub episodes: Vec<usize>,
     /// How much is seen and predicted.
     pub protocol: Protocol,
     /// What each row of a line was scored under.
@@ -34,208 +44,178 @@ pub struct Head {
 }
 
 impl Head {
-    /// Why scores of `self` cannot stand for what `wanted` asks for.
-    fn refusal(&self, wanted: &Self) -> Option<String> {
-        let version = |head: &Self| format!("poescope {}", head.poescope);
-        let data = |head: &Self| format!("{} ({})", head.data, head.data_hash);
-        let split = |head: &Self| format!("split `{}`", head.split);
-        let protocol = |head: &Self| {
-            let Protocol { context, horizon } = head.protocol;
-            format!("{context} images seen and {horizon} predicted")
-        };
-        let weights = |head: &Self| format!("weights {}", head.model.hash);
-        let parts: [&dyn Fn(&Self) -> String; 5] = [&version, &data, &split, &protocol, &weights];
-        let differs = parts.iter().find(|part| part(self) != part(wanted));
-        if let Some(part) = differs {
-            return Some(format!("scores of {}, not of {}", part(self), part(wanted)));
+    /// Why scores of `self` cannot stand for what `wanted` asks for, and what to do.
+    pub fn refusal(&self, wanted: &Self) -> Option<String> {
+        let Protocol { context, horizon } = self.protocol;
+        if self.data_hash != wanted.data_hash {
+            let name = |head: &Self| format!("{} ({})", head.data, head.data_hash);
+            let (own, other) = (name(self), name(wanted));
+            return Some(format!(
+                "scores of {own}, not of {other}; name its dataset by --data"
+            ));
+        }
+        if self.split != wanted.split {
+            let (own, other) = (&self.split, &wanted.split);
+            return Some(format!(
+                "scores of split `{own}`, not of `{other}`; give --split {own}"
+            ));
+        }
+        if self.protocol != wanted.protocol {
+            return Some(format!(
+                "scores of {context} images seen and {horizon} predicted; give --context {context} --horizon {horizon}"
+            ));
         }
         let other_frame = self.model.mean_frame != wanted.model.mean_frame;
         other_frame.then(|| "scores beside another mean training frame".to_owned())
     }
+
+    /// What is wrong with it: nothing that is read is taken on trust.
+    fn complaint(&self) -> Option<String> {
+        let About {
+            config, regressors, ..
+        } = &self.model;
+        if let Err(error) = config.validate() {
+            return Some(error.to_string());
+        }
+        let fit = |r: &crate::model::probe::Regressors| r.fit(config.latent, regression::OUTPUTS);
+        if !regressors.as_ref().is_none_or(fit) {
+            return Some("its regressors are not of its model's sizes".to_owned());
+        }
+        let Protocol { context, horizon } = self.protocol;
+        let empty = context <= config.frame_stack || horizon == 0 || self.settings.is_empty();
+        empty.then(|| "it has neither rows nor predictions".to_owned())
+    }
+
+    /// What is wrong with a line.
+    fn complaint_of(&self, scores: &EpisodeScores) -> Option<&'static str> {
+        let horizon = self.protocol.horizon;
+        let latent = self.model.config.latent;
+        let frames = |scores: &FrameScores| {
+            let FrameScores {
+                squared_error,
+                ssim,
+                psnr_db,
+            } = scores;
+            let sound = |v: &Vec<f64>| v.len() == horizon && v.iter().all(|v| v.is_finite());
+            [squared_error, ssim, psnr_db].into_iter().all(sound)
+        };
+        let rows = &scores.subjects;
+        if rows.len() != self.settings.len() {
+            return Some("not as many rows as settings");
+        }
+        let rows_frames = rows.iter().map(|row| &row.frames);
+        if !rows_frames
+            .chain([&scores.held, &scores.mean_frame])
+            .all(frames)
+        {
+            return Some("not a score for each predicted image");
+        }
+        let beliefs = |means: &Vec<f32>| {
+            means.len().is_multiple_of(latent) && means.iter().all(|mean| mean.is_finite())
+        };
+        let predicted = |means: &Vec<f32>| beliefs(means) && means.len() == horizon * latent;
+        let sound = rows
+            .iter()
+            .all(|row| beliefs(&row.filtered) && predicted(&row.predicted));
+        (!sound).then_some("beliefs that are none of its model")
+    }
 }
 
-/// What came of an episode: a further line of a score file.
+/// What came of an episode.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Outcome {
+    /// Why it could not be scored.
+    LeftOut(String),
+    /// Its scores.
+    Scores(EpisodeScores),
+}
+
+/// A further line of a score file.
 #[derive(Debug, Serialize, Deserialize)]
 pub struct Line {
-    /// Its place in the dataset: names need not be unique in a folder of files.
+    /// Its place in the dataset.
     pub index: usize,
-    /// Why it could not be scored.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub left_out: Option<String>,
-    /// Its scores.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub scores: Option<EpisodeScores>,
+    /// What came of it.
+    pub outcome: Outcome,
 }
 
-/// Lines so far, and where new ones go.
+/// Outcomes by their episodes' places.
+pub type Outcomes = BTreeMap<usize, Outcome>;
+
+/// A score file that was read.
 #[derive(Debug)]
-pub struct ScoreFile {
-    head: Head,
-    lines: BTreeMap<usize, Line>,
-    file: Option<(PathBuf, File)>,
+pub struct Scores {
+    /// What they are of.
+    pub head: Head,
+    /// Episode by episode.
+    pub outcomes: Outcomes,
+    /// Bytes up to the end of the last whole line: a kill may have left half of one.
+    pub whole: u64,
 }
 
-impl ScoreFile {
-    /// That of a run that keeps nothing.
-    pub fn fleeting(head: Head) -> Self {
-        Self {
+impl Scores {
+    /// Reads a score file, as it is or packed by `zstd`, but for a torn last line; none where not even its head is whole.
+    pub fn read(path: &Path) -> anyhow::Result<Option<Self>> {
+        let name = || path.display().to_string();
+        let file = File::open(path).with_context(name)?;
+        let packed = path.extension().is_some_and(|extension| extension == "zst");
+        let source: Box<dyn Read> = if packed {
+            Box::new(zstd::Decoder::new(file).with_context(name)?)
+        } else {
+            Box::new(file)
+        };
+        let mut source = BufReader::new(source);
+        let mut line = || -> anyhow::Result<Option<Vec<u8>>> {
+            let mut text = Vec::new();
+            source
+                .by_ref()
+                .take(MOST)
+                .read_until(b'\n', &mut text)
+                .with_context(name)?;
+            Ok((text.last() == Some(&b'\n')).then_some(text))
+        };
+        let Some(text) = line()? else {
+            return Ok(None);
+        };
+        let head = head(&text).with_context(name)?;
+        let mut scores = Self {
             head,
-            lines: BTreeMap::new(),
-            file: None,
-        }
-    }
-
-    /// What an earlier run left, as it is or packed by `zstd`.
-    pub fn published(path: &Path) -> anyhow::Result<Self> {
-        let mut lines = BTreeMap::new();
-        let (head, _) = read(path, None, &mut lines)?;
-        let empty = || format!("{}: no score file, nor a checkpoint folder", path.display());
-        Ok(Self {
-            head: head.with_context(empty)?,
-            lines,
-            file: None,
-        })
-    }
-
-    /// Reads every score file of this model in `folder` and goes on with the shard's own, or with the whole run's.
-    pub fn open(folder: &Path, head: Head, shard: Option<(usize, usize)>) -> anyhow::Result<Self> {
-        // The hash tells it from another model of a folder of that name, and from what it was before more training.
-        let short: String = head.model.hash.chars().take(8).collect();
-        let stem = format!("{}-{short}", head.model.folder);
-        let own = match shard {
-            Some((i, n)) => format!("{stem}-{i}-of-{n}.jsonl"),
-            None => format!("{stem}.jsonl"),
+            outcomes: Outcomes::new(),
+            whole: text.len() as u64,
         };
-        let mut lines = BTreeMap::new();
-        let entries = std::fs::read_dir(folder).with_context(|| folder.display().to_string())?;
-        for entry in entries {
-            let name = entry?.file_name();
-            let name = name.to_string_lossy();
-            if name.starts_with(&stem) && name.ends_with(".jsonl") && name != own {
-                read(&folder.join(&*name), Some(&head), &mut lines)?;
+        let mut number = 1;
+        while let Some(text) = line()? {
+            number += 1;
+            let damaged =
+                |what: String| format!("{}: line {number} is damaged: {what}", path.display());
+            let Line { index, outcome } = match serde_json::from_slice(&text) {
+                Ok(line) => line,
+                Err(error) => bail!(damaged(error.to_string())),
+            };
+            if let Outcome::Scores(own) = &outcome
+                && let Some(what) = scores.head.complaint_of(own)
+            {
+                bail!(damaged(what.to_owned()));
             }
+            scores.outcomes.insert(index, outcome);
+            scores.whole += text.len() as u64;
         }
-        let path = folder.join(own);
-        let failed = || path.display().to_string();
-        let (known, whole) = if path.exists() {
-            read(&path, Some(&head), &mut lines)?
-        } else {
-            (None, 0)
-        };
-        let mut file = OpenOptions::new()
-            .create(true)
-            .append(true)
-            .open(&path)
-            .with_context(failed)?;
-        // A kill may have left half a line. Another shard's may be one that it is writing right now.
-        file.set_len(whole).with_context(failed)?;
-        if known.is_none() {
-            writeln!(file, "{}", serde_json::to_string(&head)?).with_context(failed)?;
-        }
-        Ok(Self {
-            head: known.unwrap_or(head),
-            lines,
-            file: Some((path, file)),
-        })
-    }
-
-    /// What the scores are of.
-    pub fn head(&self) -> &Head {
-        &self.head
-    }
-
-    /// The rows that `wanted` asks for, of what an earlier run left.
-    pub fn picked(mut self, wanted: Head) -> anyhow::Result<Self> {
-        if let Some(why) = self.head.refusal(&wanted) {
-            bail!("{why}");
-        }
-        let place = |setting: &Setting| {
-            let place = self.head.settings.iter().position(|own| own == setting);
-            place.with_context(|| format!("no scores under `{}`", setting.name))
-        };
-        let places: Vec<usize> = wanted
-            .settings
-            .iter()
-            .map(place)
-            .collect::<anyhow::Result<_>>()?;
-        for scores in self.lines.values_mut().filter_map(|l| l.scores.as_mut()) {
-            let rows = places
-                .iter()
-                .map(|&place| scores.subjects.get(place).cloned());
-            scores.subjects = rows
-                .collect::<Option<_>>()
-                .context("a line without its rows")?;
-        }
-        self.head = wanted;
-        Ok(self)
-    }
-
-    /// The places in the dataset that are done with.
-    pub fn indices(&self) -> impl Iterator<Item = usize> {
-        self.lines.keys().copied()
-    }
-
-    /// What came of an episode; none while it is not done with.
-    pub fn line(&self, index: usize) -> Option<&Line> {
-        self.lines.get(&index)
-    }
-
-    /// Adds what came of an episode.
-    pub fn push(&mut self, line: Line) -> anyhow::Result<()> {
-        if let Some((path, file)) = &mut self.file {
-            let text = serde_json::to_string(&line)? + "\n";
-            // One write a line: a kill leaves at most the last one torn.
-            file.write_all(text.as_bytes())
-                .with_context(|| path.display().to_string())?;
-        }
-        self.lines.insert(line.index, line);
-        Ok(())
+        Ok(Some(scores))
     }
 }
 
-/// Reads a score file but for a torn last line, refusing one that cannot stand for `wanted`: its head, and the length of
-/// what is whole.
-fn read(
-    path: &Path,
-    wanted: Option<&Head>,
-    lines: &mut BTreeMap<usize, Line>,
-) -> anyhow::Result<(Option<Head>, u64)> {
-    let failed = || path.display().to_string();
-    let file = File::open(path).with_context(failed)?;
-    let packed = path.extension().is_some_and(|extension| extension == "zst");
-    let source: Box<dyn Read> = if packed {
-        Box::new(zstd::Decoder::new(file).with_context(failed)?)
-    } else {
-        Box::new(file)
-    };
-    let mut source = BufReader::new(source);
-    let (mut head, mut whole, mut text) = (None, 0, Vec::new());
-    while source.read_until(b'\n', &mut text).with_context(failed)? > 0 {
-        if text.last() != Some(&b'\n') {
-            break;
-        }
-        if head.is_none() {
-            let known: Head = serde_json::from_slice(&text)
-                .with_context(|| format!("{}: not a score file", path.display()))?;
-            let others = |wanted: &Head| {
-                let other = || "scores under other settings".to_owned();
-                let differ = known.settings != wanted.settings;
-                known.refusal(wanted).or_else(|| differ.then(other))
-            };
-            if let Some(why) = wanted.and_then(others) {
-                bail!(
-                    "{} holds {why}; choose another --out, or remove it",
-                    path.display()
-                );
-            }
-            head = Some(known);
-        } else {
-            let line: Line = serde_json::from_slice(&text)
-                .with_context(|| format!("{}: a damaged line; remove the file", path.display()))?;
-            lines.insert(line.index, line);
-        }
-        whole += text.len() as u64;
-        text.clear();
+/// The first line.
+fn head(text: &[u8]) -> anyhow::Result<Head> {
+    #[derive(Deserialize)]
+    struct Form {
+        scores: u32,
     }
-    Ok((head, whole))
+    let Form { scores } = serde_json::from_slice(text).context("not a score file")?;
+    if scores != FORM {
+        bail!("a score file of form {scores}, this poescope reads form {FORM}; score anew");
+    }
+    let head: Head = serde_json::from_slice(text).context("a damaged score file")?;
+    head.complaint()
+        .map_or(Ok(head), |what| bail!("a damaged score file: {what}"))
 }

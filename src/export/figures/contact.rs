@@ -52,6 +52,7 @@ pub fn contact(summary: &Summary) -> Option<Plot> {
             series,
             equal: false,
             from_zero: true,
+            ends: None,
         };
         let at = [
             (i % columns) as f32 * size[0],

@@ -60,6 +60,7 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
         series,
         equal: true,
         from_zero: false,
+        ends: None,
     };
     let mut plot = panel.draw();
     style::below(&mut plot, &style::named(&labels));

@@ -27,6 +27,7 @@ pub fn training(curves: Vec<(String, Vec<[f64; 2]>)>) -> Option<Plot> {
         series,
         equal: false,
         from_zero: false,
+        ends: None,
     };
     let mut plot = panel.draw();
     style::below(&mut plot, &named);

@@ -38,6 +38,8 @@ pub struct Panel {
     pub equal: bool,
     /// Whether y begins at zero.
     pub from_zero: bool,
+    /// Least and largest y, where panels are to be compared; else as the curves have it.
+    pub ends: Option<[f64; 2]>,
 }
 
 const LEFT: f32 = 54.0;
@@ -61,7 +63,10 @@ impl Scale {
 
 impl Panel {
     /// Least and largest number of an axis, with some room.
-    fn range(&self, axis: usize) -> [f64; 2] {
+    pub fn range(&self, axis: usize) -> [f64; 2] {
+        if let (1, Some(ends)) = (axis, self.ends) {
+            return ends;
+        }
         let points = self.series.iter().flat_map(|s| {
             let band = s
                 .points

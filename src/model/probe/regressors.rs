@@ -50,6 +50,25 @@ impl Regressors {
         self.filtered.linear.bias.len()
     }
 
+    /// Whether they read `outputs` numbers from `latent` ones, and all of theirs are finite.
+    pub fn fit(&self, latent: usize, outputs: usize) -> bool {
+        let sizes = [[latent, outputs], [latent, UNITS], [UNITS, outputs]];
+        let sound = |(linear, [inputs, outputs]): (&Linear, [usize; 2])| {
+            let Linear { weight, bias } = linear;
+            let finite = weight.iter().chain(bias).all(|v| v.is_finite());
+            finite && weight.len() == inputs * outputs && bias.len() == outputs
+        };
+        let all = |readers: &Readers| {
+            readers
+                .parts()
+                .map(|(_, part)| part)
+                .into_iter()
+                .zip(sizes)
+                .all(sound)
+        };
+        all(&self.filtered) && all(&self.predicted)
+    }
+
     /// As named tensors, `filtered.hidden.weight` and the like.
     pub fn tensors(&self) -> Result<Vec<(String, Tensor)>> {
         let mut all = Vec::new();

@@ -70,7 +70,7 @@ fn shapley_values_are_those_of_the_sets_scored_one_by_one() {
     let scores = fs::read_to_string(score_file(&out, "v-h-p")).unwrap();
     for (place, line) in scores.lines().skip(1).enumerate() {
         let line: Value = serde_json::from_str(line).unwrap();
-        let gain = line["scores"]["subjects"][0]["credit"]["nll_gain"].as_f64();
+        let gain = line["outcome"]["scores"]["subjects"][0]["credit"]["nll_gain"].as_f64();
         let own = rows.iter().filter(|row| row[0] == place.to_string());
         let sum: f64 = own.map(|row| row[5].parse::<f64>().unwrap()).sum();
         assert!((sum - gain.unwrap()).abs() < 1e-9);

@@ -1,0 +1,180 @@
+//! What models are scored on.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+
+use anyhow::{Context, bail};
+
+use super::entrants::{Entrant, Source};
+use super::ledger::settings;
+use super::scores::Outcome;
+use crate::cli::EvalArgs;
+use crate::command::sample;
+use crate::data::Dataset;
+use crate::episode::{Episode, EpisodeSource, Split};
+use crate::eval::score::{Contest, score};
+use crate::eval::summary::Scope;
+use crate::model::observation::{self, suits};
+
+/// What models are scored on: some episodes of a dataset.
+pub struct Ground {
+    /// The dataset and its path; none where scores alone were named, which say themselves what they are of.
+    dataset: Option<(PathBuf, Dataset)>,
+    /// What to call it.
+    pub scope: Scope,
+    /// The episodes' places in the dataset.
+    pub episodes: Vec<usize>,
+}
+
+impl Ground {
+    /// What was asked for, else the sample's.
+    pub fn of(args: &EvalArgs, entrants: &[Entrant]) -> anyhow::Result<Self> {
+        let published = entrants.iter().all(|entrant| entrant.scorer().is_none());
+        if let (true, None, Source::Scores(scores)) = (published, &args.data, &entrants[0].source) {
+            if args.shard.is_some() {
+                bail!("--shard: there is nothing to score");
+            }
+            let head = &scores.head;
+            let split = args.split.map(|split| split.name().to_owned());
+            return Ok(Self {
+                dataset: None,
+                scope: Scope {
+                    data: head.data.clone(),
+                    data_hash: head.data_hash.clone(),
+                    split: split.unwrap_or_else(|| head.split.clone()),
+                    left_out: Vec::new(),
+                },
+                episodes: head.episodes.clone(),
+            });
+        }
+        let path = sample::data(args.data.as_ref())?;
+        let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
+        let (split, episodes) = wanted(args, &dataset, entrants)?;
+        let scope = Scope {
+            data: dataset.name().to_owned(),
+            data_hash: dataset.data_hash().to_owned(),
+            split: split.name().to_owned(),
+            left_out: Vec::new(),
+        };
+        Ok(Self {
+            dataset: Some((path, dataset)),
+            scope,
+            episodes,
+        })
+    }
+
+    /// The dataset, where it is at hand.
+    pub fn dataset(&self) -> Option<&Dataset> {
+        self.dataset.as_ref().map(|(_, dataset)| dataset)
+    }
+
+    /// What to call an episode.
+    pub fn name(&self, index: usize) -> String {
+        match self.dataset() {
+            Some(dataset) => format!("`{}`", dataset.metas()[index].id),
+            None => format!("number {index}"),
+        }
+    }
+
+    /// Where the episodes come from, as [`Dataset::origin`] has it.
+    pub fn origins(&self) -> HashSet<(&str, usize)> {
+        let origin = |&i: &usize| self.dataset()?.origin(i);
+        self.episodes.iter().filter_map(origin).collect()
+    }
+
+    /// Scores an episode by the models that lack it, in their order, or says of each why it is left out.
+    pub fn score(
+        &self,
+        contest: &Contest,
+        entrants: &[Entrant],
+        lacking: &[usize],
+        index: usize,
+    ) -> anyhow::Result<Vec<Outcome>> {
+        let Some((path, dataset)) = &self.dataset else {
+            bail!("no dataset to score on; name it by --data");
+        };
+        let left_out = |why: String| vec![Outcome::LeftOut(why); lacking.len()];
+        let layout = contest.candidates[0].config.layout();
+        let episode = match dataset.load(index, layout) {
+            Ok(episode) => episode,
+            Err(error) => return Ok(left_out(error.to_string())),
+        };
+        if let Some(why) = odd(&episode) {
+            return Ok(left_out(why));
+        }
+        let id = &episode.meta.id;
+        for candidate in &contest.candidates {
+            let missing = observation::missing(&candidate.config, &episode);
+            if !missing.is_empty() {
+                bail!(
+                    "{}: episode `{id}` lacks {}, which model `{}` sees",
+                    path.display(),
+                    missing.join(", "),
+                    candidate.label
+                );
+            }
+            suits(&candidate.config, &episode).with_context(|| path.display().to_string())?;
+        }
+        let (steps, images) = (episode.steps(), contest.protocol.images());
+        if steps < images {
+            return Ok(left_out(format!(
+                "episode `{id}` has {steps} images of {images}; choose a smaller --horizon"
+            )));
+        }
+        let by = |&candidate: &usize| {
+            let scorer = entrants[candidate].scorer().context("no weights")?;
+            let settings = settings(contest, candidate);
+            let label = &contest.candidates[candidate].label;
+            score(scorer, &settings, contest.protocol, &episode)
+                .map(Outcome::Scores)
+                .with_context(|| format!("`{label}`, episode `{id}`"))
+        };
+        lacking.iter().map(by).collect()
+    }
+}
+
+/// The split that is scored, and its episodes. Where the dataset names no `val`, every training on it has cut its own by
+/// its seed: episodes that one model has not seen another was trained on, so such models are refused together.
+fn wanted(
+    args: &EvalArgs,
+    dataset: &Dataset,
+    entrants: &[Entrant],
+) -> anyhow::Result<(Split, Vec<usize>)> {
+    let splits = |entrant: &Entrant| dataset.splits(entrant.about.split_seed());
+    let trained_on_it = |entrant: &&Entrant| {
+        let hash = entrant.about.report["data_hash"].as_str();
+        hash.is_none_or(|hash| hash == dataset.data_hash())
+    };
+    let cutters: Vec<&Entrant> = entrants.iter().filter(trained_on_it).collect();
+    let cutter = *cutters.first().unwrap_or(&&entrants[0]);
+    let first = splits(cutter);
+    let split = args.split.unwrap_or_else(|| {
+        let has = |split: &Split| first.contains(split);
+        let known = [Split::Test, Split::Val].into_iter().find(has);
+        known.unwrap_or(Split::Test)
+    });
+    let of_split = |splits: &[Split]| -> Vec<usize> {
+        let own = splits.iter().enumerate().filter(|(_, own)| **own == split);
+        own.map(|(index, _)| index).collect()
+    };
+    let wanted = of_split(&first);
+    for entrant in cutters.into_iter().skip(1) {
+        if of_split(&splits(entrant)) != wanted {
+            bail!(
+                "{} names no split `val`: {} and {} have each cut their own from `train`, by different seeds; evaluate \
+                 them apart, or on a dataset that names its splits",
+                dataset.name(),
+                cutter.path.display(),
+                entrant.path.display()
+            );
+        }
+    }
+    Ok((split, wanted))
+}
+
+/// Why an episode says nothing about a model: what was odd when it was recorded, as training has it.
+pub fn odd(episode: &Episode) -> Option<String> {
+    let flag = episode.flags.first()?;
+    let id = &episode.meta.id;
+    Some(format!("episode `{id}`: {}: {}", flag.topic, flag.what))
+}
