@@ -75,6 +75,13 @@ pub enum Command {
     Select,
     /// Switch an expert on or off within the scope: a position in the model's list, the prior last.
     ToggleExpert(usize),
+    /// The same, but so, however it is: of two who want it off neither switches it on.
+    SwitchExpert {
+        /// Position in the model's list, the prior last.
+        expert: usize,
+        /// Whether it is to be on.
+        on: bool,
+    },
     /// Only this expert, within the scope; the prior stays as it is.
     Solo(usize),
     /// Every expert as trained, everywhere.

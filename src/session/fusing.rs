@@ -86,16 +86,29 @@ pub fn toggle(
     place: Place,
     position: usize,
 ) -> Result<String, Refusal> {
+    let is_on = switches.alpha(factor_at(model, position)?, place.step) > 0.0;
+    turn(model, switches, place, position, !is_on)
+}
+
+/// Switches an expert on or off; one that is so already stays as it is.
+pub fn turn(
+    model: &ModelInfo,
+    switches: &mut Switches,
+    place: Place,
+    position: usize,
+    on: bool,
+) -> Result<String, Refusal> {
     let expert = factor_at(model, position)?;
-    let mut changed = switches.clone();
-    let state = if switches.alpha(expert, place.step) > 0.0 {
-        changed.off(expert, place.reach());
-        "off"
-    } else {
-        changed.on(expert, place.reach());
-        "on"
-    };
-    accept(model, switches, changed, expert.name())?;
+    if on != (switches.alpha(expert, place.step) > 0.0) {
+        let mut changed = switches.clone();
+        if on {
+            changed.on(expert, place.reach());
+        } else {
+            changed.off(expert, place.reach());
+        }
+        accept(model, switches, changed, expert.name())?;
+    }
+    let state = if on { "on" } else { "off" };
     Ok(format!("{} {state} {}", expert.name(), place.words()))
 }
 

@@ -37,6 +37,11 @@ impl Session {
                     fusing::toggle(model, switches, place, position)
                 });
             }
+            Command::SwitchExpert { expert, on } => {
+                self.switch(|model, switches, place| {
+                    fusing::turn(model, switches, place, expert, on)
+                });
+            }
             Command::Solo(position) => {
                 self.switch(|model, switches, place| {
                     fusing::solo(model, switches, place, position)

@@ -62,7 +62,7 @@ fn numbered(text: &str) -> Option<(String, u64)> {
 
 fn commands(element: &str, value: &Value, snapshot: &Snapshot) -> Option<Vec<Command>> {
     if let Some(expert) = element.strip_prefix(SWITCH) {
-        return switch(place(expert, snapshot)?, value, snapshot);
+        return switch(place(expert, snapshot)?, value);
     }
     if let (Some(expert), Value::Number(alpha)) = (element.strip_prefix(ALPHA), value) {
         let (expert, alpha) = (place(expert, snapshot)?, tenths(*alpha));
@@ -135,13 +135,12 @@ fn place(expert: &str, snapshot: &Snapshot) -> Option<usize> {
         .position(|view| view.expert.name() == expert)
 }
 
-fn switch(expert: usize, value: &Value, snapshot: &Snapshot) -> Option<Vec<Command>> {
+/// The snapshot may be older than what another viewer has just asked for: what is wanted is passed on as it is.
+fn switch(expert: usize, value: &Value) -> Option<Vec<Command>> {
     let Value::Bool(on) = *value else {
         return None;
     };
-    let is_on = snapshot.experts.get(expert)?.alpha > 0.0;
-    let command = (on != is_on).then_some(Command::ToggleExpert(expert));
-    Some(command.into_iter().collect())
+    Some(vec![Command::SwitchExpert { expert, on }])
 }
 
 /// As many times faster or slower as there are factors of two between.
@@ -290,10 +289,21 @@ mod tests {
     }
 
     #[test]
-    fn a_switch_that_is_so_already_asks_for_nothing() {
-        let snapshot = session().snapshot();
-        let asked = of_control("poescope-switch-vision", &Value::Bool(true), &snapshot);
-        assert_eq!(asked, Asked::Commands(Vec::new()));
+    fn two_viewers_who_want_the_same_do_not_undo_each_other() {
+        let mut session = session();
+        // What both have before them.
+        let snapshot = session.snapshot();
+        let mut ask = |on: bool| {
+            let asked = of_control("poescope-switch-vision", &Value::Bool(on), &snapshot);
+            let Asked::Commands(commands) = asked else {
+                panic!("{asked:?}");
+            };
+            commands.into_iter().for_each(|c| session.apply(c));
+            assert!(session.wait_idle(Duration::from_secs(20)));
+            session.snapshot().experts[0].alpha
+        };
+        let alphas = [ask(false), ask(false), ask(true), ask(true)];
+        assert_eq!(format!("{alphas:?}"), "[0.0, 0.0, 1.0, 1.0]");
     }
 
     #[test]

@@ -24,6 +24,7 @@ fn any_command() -> impl Strategy<Value = Command> {
         (0_usize..6).prop_map(SelectEpisode),
         (0_usize..4).prop_map(SelectModel),
         (0_usize..5).prop_map(ToggleExpert),
+        ((0_usize..5), any::<bool>()).prop_map(|(expert, on)| SwitchExpert { expert, on }),
         (0_usize..5).prop_map(Solo),
         Just(AllOn),
         (
