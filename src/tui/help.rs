@@ -5,8 +5,9 @@ use ratatui::layout::{Rect, Size};
 use ratatui::style::Style;
 use ratatui::widgets::{Clear, Widget};
 
-use super::paint::{right, text, wrapped};
+use super::paint::{right, text};
 use super::theme::{dim, strong};
+use super::words::wrap;
 use crate::session::keymap::groups;
 
 /// The narrowest column of keys and what they do.
@@ -100,7 +101,7 @@ fn lines(column_width: usize) -> Vec<Line> {
         lines.push(Line::Group(name));
         for binding in bindings {
             let mut label = binding.label();
-            for help in wrapped(binding.help, room) {
+            for help in wrap(binding.help, room as u16) {
                 lines.push(Line::Key {
                     label: std::mem::take(&mut label),
                     help,

@@ -42,31 +42,6 @@ pub fn put(buf: &mut Buffer, pane: Rect, column: u16, row: u16, symbol: char, st
     }
 }
 
-/// Writes a text over as many rows as it needs, broken at blanks; returns the row after it.
-pub fn paragraph(buf: &mut Buffer, pane: Rect, row: u16, content: &str, style: Style) -> u16 {
-    let mut row = row;
-    for line in wrapped(content, usize::from(pane.width.max(1))) {
-        text(buf, pane, 0, row, &line, style);
-        row = row.saturating_add(1);
-    }
-    row
-}
-
-/// Breaks at blanks so that no line is wider than the room, unless a single word is.
-pub fn wrapped(content: &str, room: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in content.split(' ') {
-        match lines.last_mut() {
-            Some(line) if usize::from(width(line) + 1 + width(word)) <= room => {
-                line.push(' ');
-                line.push_str(word);
-            }
-            _ => lines.push(word.to_owned()),
-        }
-    }
-    lines
-}
-
 /// A number of four columns at most, five with a minus; a dash for what is no number.
 pub fn short(value: f32) -> String {
     match value.abs() {
@@ -151,12 +126,6 @@ mod tests {
             Style::new(),
         );
         assert_eq!(buf, Buffer::with_lines(["   abc    ", "        ed"]));
-    }
-
-    #[test]
-    fn long_lines_break_at_blanks() {
-        assert_eq!(wrapped("one two three", 8), ["one two", "three"]);
-        assert_eq!(wrapped("incomprehensible", 8), ["incomprehensible"]);
     }
 
     #[test]

@@ -21,10 +21,11 @@ use ratatui::style::Style;
 
 use super::braille::{Canvas, Stroke};
 use super::face::Face;
-use super::paint::{below_title, put, text, title};
+use super::paint::{below_title, put, text, title, width};
 use super::plane::{Extent, GUTTER, Plane};
 use super::theme::{PREDICTION, dim, strong};
 use super::view::{Pane, View};
+use super::words;
 use crate::measure::ellipse::{ONE_SIGMA_MASS, SIGMAS_OF_95_PERCENT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 
@@ -58,18 +59,22 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if legend > 0 {
         let row = inner.height - 2;
         let ink = face.depth.ink(PREDICTION);
-        let (gap, prediction) = if inner.width < 40 {
-            (1, "┈ pred")
+        let (full, short) = words::prediction(snapshot);
+        let (gap, name) = if inner.width < 40 {
+            (1, short)
         } else {
-            (2, "┈ prediction")
+            (2, full)
         };
         let mut at = text(buf, inner, 0, row, "╌ truth", dim());
         at = text(buf, inner, at + gap, row, "─ belief", dim());
-        at = text(buf, inner, at + gap, row, prediction, dim().patch(ink));
-        text(buf, inner, at + gap, row, "+ tip", dim());
+        let name = format!("┈ {name}");
+        at = text(buf, inner, at + gap, row, &name, dim().patch(ink));
+        if at + gap + width("+ tip") <= inner.width {
+            text(buf, inner, at + gap, row, "+ tip", dim());
+        }
         let mut masses = masses();
         if inner.width >= 52 {
-            masses.push_str("; prediction: one step's σ");
+            masses += &format!("; {full}: one step's σ");
         }
         text(buf, inner, 0, row + 1, &masses, dim());
     }

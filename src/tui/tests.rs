@@ -267,6 +267,16 @@ fn a_sample_is_not_called_the_prediction() {
     };
     assert_eq!(rows("lllllll"), (1, 0));
     assert_eq!(rows("lllllll m"), (0, 1));
+    // Nor is its error anywhere.
+    for size in [SMALL, LARGE] {
+        let app = pressed("lllllll m", size);
+        let shown = to_text(&screen(&app.session.snapshot(), &app.face, size), false);
+        let mut words = shown.split_whitespace();
+        assert!(
+            !words.any(|word| matches!(word, "pred" | "prediction")),
+            "{shown}"
+        );
+    }
 }
 
 #[test]

@@ -45,7 +45,7 @@ pub fn sentence(buf: &mut Buffer, pane: Rect, row: u16, content: &str, style: St
     let mut row = row;
     for line in wrap(content, pane.width) {
         text(buf, pane, 0, row, &line, style);
-        row += 1;
+        row = row.saturating_add(1);
     }
     row
 }

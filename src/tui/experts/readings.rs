@@ -10,8 +10,9 @@ use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::reading::ExpertReading;
 use crate::tui::face::Face;
 use crate::tui::fuse::{mark, range};
-use crate::tui::paint::{paragraph, put, right, short, text, width};
+use crate::tui::paint::{put, right, short, text, width};
 use crate::tui::theme::{WARNING, dim, strong};
+use crate::tui::words::sentence;
 
 /// Where each column ends, and what stands above it.
 type Columns = [(u16, &'static str); 5];
@@ -112,7 +113,7 @@ pub fn notes(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
             height: pane.height - 1,
             ..pane
         };
-        paragraph(buf, below, 0, scale, dim());
+        sentence(buf, below, 0, scale, dim());
     }
 }
 

@@ -21,6 +21,7 @@ use crate::tui::experts::{damage_badge, is_at};
 use crate::tui::face::Face;
 use crate::tui::image::{ERROR_RANGE, Raster};
 use crate::tui::theme::{PREDICTION, SECOND, WARNING, strong};
+use crate::tui::words;
 
 /// One image with its label.
 pub struct Slot {
@@ -53,7 +54,7 @@ pub fn slots(snapshot: &Snapshot, face: &Face) -> Vec<Slot> {
     };
     let error = Slot {
         name: "error".to_owned(),
-        notes: vec![format!("±{ERROR_RANGE:.2}"), of(row.error_of).to_owned()],
+        notes: vec![format!("±{ERROR_RANGE:.2}"), of(snapshot).to_owned()],
         style: strong(),
         image: row
             .error
@@ -201,11 +202,7 @@ fn compare(a: &mut Slot, b: Option<&Slot>, snapshot: &Snapshot, face: &Face) {
                 _ => snapshot.frames.error.as_deref(),
             };
             if let Some(difference) = difference {
-                let short = if b.is_some() {
-                    "A"
-                } else {
-                    of(snapshot.frames.error_of)
-                };
+                let short = if b.is_some() { "A" } else { of(snapshot) };
                 a.name = format!("{short} − {b_name}");
                 a.notes = vec![format!("±{ERROR_RANGE:.2}")];
                 a.image = Ok(Raster::from(difference));
@@ -227,11 +224,7 @@ fn compare(a: &mut Slot, b: Option<&Slot>, snapshot: &Snapshot, face: &Face) {
             };
             if let Some(both) = both {
                 a.image = Ok(both);
-                let name = if b.is_some() {
-                    "A"
-                } else {
-                    of(snapshot.frames.error_of)
-                };
+                let name = if b.is_some() { "A" } else { of(snapshot) };
                 a.name = format!("{name} │ {b_name}");
                 a.notes.clear();
             }
@@ -243,10 +236,11 @@ fn image(frame: Option<&Arc<Frame>>, why: impl Fn() -> String) -> Result<Raster,
     frame.map(|frame| Raster::from(&**frame)).ok_or_else(why)
 }
 
-fn of(error_of: ErrorOf) -> &'static str {
-    match error_of {
+/// What the error is of, in short.
+fn of(snapshot: &Snapshot) -> &'static str {
+    match snapshot.frames.error_of {
         ErrorOf::Belief => "belief",
-        ErrorOf::Prediction => "pred",
+        ErrorOf::Prediction => words::prediction(snapshot).1,
     }
 }
 

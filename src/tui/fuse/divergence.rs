@@ -21,9 +21,10 @@ use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::reading::FusionView;
 use crate::tui::face::Face;
 use crate::tui::layout::rows;
-use crate::tui::paint::{below_title, paragraph, right, short, text, title, width, wrapped};
+use crate::tui::paint::{below_title, right, short, text, title, width};
 use crate::tui::theme::{dim, strong};
 use crate::tui::view::Pane;
+use crate::tui::words::{sentence, wrap};
 
 /// Columns after which the numbers end, and at which the bars begin.
 const MEAN_END: u16 = 18;
@@ -115,14 +116,14 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 fn explain(buf: &mut Buffer, pane: Rect) {
     let needed: usize = WORDS_BELOW
         .iter()
-        .map(|line| wrapped(line, usize::from(pane.width.max(1))).len())
+        .map(|line| wrap(line, pane.width).len())
         .sum();
     if needed > usize::from(pane.height) {
         return;
     }
     WORDS_BELOW
         .iter()
-        .fold(0, |row, line| paragraph(buf, pane, row, line, dim()));
+        .fold(0, |row, line| sentence(buf, pane, row, line, dim()));
 }
 
 fn terms(fusion: &FusionView, snapshot: &Snapshot) -> Vec<Term> {

@@ -6,8 +6,9 @@ use ratatui::style::Style;
 
 use crate::modality::Expert;
 use crate::session::snapshot::{Badge, ModelInfo, Snapshot};
-use crate::tui::paint::{paragraph, text};
+use crate::tui::paint::text;
 use crate::tui::theme::dim;
+use crate::tui::words::sentence;
 
 /// Says why there is no reading, in the rows below a pane's title.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
@@ -39,7 +40,7 @@ fn no_product(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
         text(buf, pane, 0, 0, "no model is open", dim());
         return;
     };
-    let mut row = paragraph(buf, pane, 0, &reason(model), Style::new());
+    let mut row = sentence(buf, pane, 0, &reason(model), Style::new());
     row += u16::from(pane.height > 8);
     let instead = [
         "Its input can still be damaged (x), and the belief watched for it.",
@@ -47,7 +48,7 @@ fn no_product(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
         "A model with a product is opened by a second --model; ( and ) change between them.",
     ];
     for line in instead {
-        row = paragraph(buf, pane, row, line, dim());
+        row = sentence(buf, pane, row, line, dim());
     }
 }
 

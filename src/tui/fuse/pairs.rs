@@ -18,9 +18,10 @@ use crate::measure::innovation::{Conflict, Disagreement};
 use crate::session::snapshot::{Badge, Snapshot};
 use crate::tui::face::Face;
 use crate::tui::layout::rows;
-use crate::tui::paint::{below_title, paragraph, put, right, short, text, title, width};
+use crate::tui::paint::{below_title, put, right, short, text, title, width};
 use crate::tui::theme::{Depth, WARNING, dim, strong};
 use crate::tui::view::Pane;
+use crate::tui::words::sentence;
 
 /// Columns of one distance with its mark.
 const CELL: u16 = 7;
@@ -136,7 +137,7 @@ fn conflict(buf: &mut Buffer, pane: Rect, reading: Conflict, snapshot: &Snapshot
     };
     text(buf, pane, at + 1, 0, &bounds, dim());
     let roomy = pane.height > 3;
-    let row = paragraph(buf, pane, 1, words(reading, roomy), Style::new());
+    let row = sentence(buf, pane, 1, words(reading, roomy), Style::new());
     // The belief is sharpest just when it is wrong, so its σ stands beside Q.
     let sigma = snapshot.belief.as_ref().map_or(f32::NAN, |belief| {
         belief.sigma.iter().sum::<f32>() / belief.sigma.len().max(1) as f32

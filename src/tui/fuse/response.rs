@@ -15,9 +15,10 @@ use ratatui::style::Style;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::response::ResponseView;
 use crate::tui::face::Face;
-use crate::tui::paint::{below_title, eighth, paragraph, text, title};
+use crate::tui::paint::{below_title, eighth, text, title};
 use crate::tui::theme::{dim, strong};
 use crate::tui::view::Pane;
+use crate::tui::words::sentence;
 
 /// Rows of one damage: three curves and a sentence of up to two rows; the title stands above all.
 pub const ROWS: u16 = 6;
@@ -36,7 +37,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         } else {
             "computing…"
         };
-        paragraph(buf, inner, 0, why, dim());
+        sentence(buf, inner, 0, why, dim());
         return;
     }
     let mut row = 0;
@@ -71,5 +72,5 @@ fn curves(buf: &mut Buffer, pane: Rect, row: u16, response: &ResponseView, face:
         let change = format!("{first} → {last}{unit}");
         text(buf, pane, at, row, &change, Style::new());
     }
-    paragraph(buf, pane, row + 3, &response.sentence, Style::new())
+    sentence(buf, pane, row + 3, &response.sentence, Style::new())
 }
