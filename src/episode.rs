@@ -133,6 +133,9 @@ pub struct Flag {
     pub what: String,
 }
 
+/// Sides and height of the object as it is drawn, in metres: those of the paper's plate, for a recording does not say them.
+pub const PLATE_M: [f32; 3] = [0.14, 0.14, 0.03];
+
 /// The pose of the pushed object on the table.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PlanarPose {

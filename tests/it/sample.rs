@@ -24,6 +24,13 @@ fn line<'a>(frame: &'a str, label: &str) -> &'a str {
 }
 
 #[test]
+fn the_plate_is_drawn_as_large_as_it_is_simulated() {
+    let scene = poescope::sim::Scene::default();
+    let simulated = [scene.plate_side_m, scene.plate_side_m, scene.plate_height_m];
+    assert_eq!(simulated.map(|m| m as f32), poescope::episode::PLATE_M);
+}
+
+#[test]
 fn an_expert_switched_off_changes_shares_position_and_prediction() {
     let (with, without) = (printed("llllllllpll"), printed("llllllllpll1"));
     for label in ["2 H haptic", "9 D prior"] {

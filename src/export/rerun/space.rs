@@ -6,6 +6,7 @@ use ::rerun::{LineStrips3D, RecordingStreamResult, ViewCoordinates};
 use super::log::{AtSteps, Log};
 use super::style::{self, Rgb};
 use super::{Shown, each};
+use crate::episode::PLATE_M as PLATE;
 use crate::export::Run;
 use crate::export::step::Step;
 use crate::measure::ellipse::{Ellipse, SIGMAS_OF_95_PERCENT};
@@ -13,12 +14,10 @@ use crate::session::snapshot::Estimate;
 
 /// What all of it lies under.
 pub(super) const ROOT: &str = "table";
-/// Sides and height of the plate as it is drawn; a recording does not say them.
-const PLATE: [f32; 3] = [0.09, 0.09, 0.013];
 /// Sides and height of the tip as it is drawn.
 const TIP: [f32; 3] = [0.0095, 0.0095, 0.06];
 /// Just above the plate: what is drawn about it is to be seen.
-const ABOVE: f32 = 0.018;
+const ABOVE: f32 = PLATE[2] + 0.005;
 /// Half the width of paths.
 const THIN: f32 = 0.0008;
 /// Half the width of ellipses and arrows.

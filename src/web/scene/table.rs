@@ -1,6 +1,7 @@
 //! The table with the plate on it, the tip that pushes, and where the plate is believed and predicted to be.
 
 use super::nodes::{Nodes, Point};
+use crate::episode::PLATE_M as PLATE;
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 use crate::web::protocol::camera::{CameraLookAt, CameraPosition};
 use crate::web::protocol::grid::{Grid, GridProps};
@@ -8,14 +9,12 @@ use crate::web::protocol::pose::Visibility;
 use crate::web::protocol::props::Look;
 use crate::web::protocol::shapes::{Ball, BallProps, Cuboid, CuboidProps, Cylinder, CylinderProps};
 
-/// Sides and height of the plate as it is drawn; a recording does not say them.
-const PLATE: [f32; 3] = [0.09, 0.09, 0.013];
 /// The prediction's colour.
 pub const PREDICTION: [u8; 3] = [0x56, 0xB4, 0xE9];
 /// The belief's.
 pub const BELIEF: [u8; 3] = [0x40, 0x40, 0x40];
 /// Just above the plate: what is drawn about it is to be seen.
-pub const ABOVE: f32 = 0.018;
+pub const ABOVE: f32 = PLATE[2] + 0.005;
 /// The smallest table.
 const SIDE: f32 = 0.4;
 

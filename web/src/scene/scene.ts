@@ -24,7 +24,7 @@ import { Labels } from "./labels";
 import { pick } from "./pick";
 
 /** Around the path: the plate is larger than its own middle. */
-const ROOM_M = 0.055;
+const ROOM_M = 0.08;
 /** A plate that hardly moves is still seen with its surroundings. */
 const NEAREST_M = 0.14;
 
