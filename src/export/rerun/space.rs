@@ -15,7 +15,7 @@ use crate::session::snapshot::Estimate;
 /// What all of it lies under.
 pub(super) const ROOT: &str = "table";
 /// Sides and height of the tip as it is drawn.
-const TIP: [f32; 3] = [0.0095, 0.0095, 0.06];
+const TIP: [f32; 3] = [0.0095, 0.0095, 3.0 * PLATE[2]];
 /// Just above the plate: what is drawn about it is to be seen.
 const ABOVE: f32 = PLATE[2] + 0.005;
 /// Half the width of paths.

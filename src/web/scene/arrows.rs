@@ -1,7 +1,7 @@
 //! What each sensor pulls the belief by, head to tail from the prior's place, and the force of contact.
 
 use super::nodes::{Nodes, Point};
-use super::table::ABOVE;
+use super::table::{ABOVE, TIP_HEIGHT};
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
 
@@ -14,7 +14,7 @@ const PER_NEWTON: f32 = 0.01;
 /// The longest arrow of a force, in metres.
 const LONGEST: f32 = 0.12;
 /// Height of the force's arrow above the table.
-const FORCE_HEIGHT: f32 = 0.025;
+const FORCE_HEIGHT: f32 = ABOVE + 0.01;
 /// The force's colour.
 const FORCE: [u8; 3] = [0xCC, 0x33, 0x11];
 
@@ -99,7 +99,7 @@ fn force(nodes: &mut Nodes, snapshot: &Snapshot) {
     nodes.label(
         "/force/label",
         format!("{newtons:.1} N"),
-        ends.map(|[from, _]| [from[0], from[1], 0.07]),
+        ends.map(|[from, _]| [from[0], from[1], TIP_HEIGHT + 0.01]),
     );
 }
 

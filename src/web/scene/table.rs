@@ -15,6 +15,8 @@ pub const PREDICTION: [u8; 3] = [0x56, 0xB4, 0xE9];
 pub const BELIEF: [u8; 3] = [0x40, 0x40, 0x40];
 /// Just above the plate: what is drawn about it is to be seen.
 pub const ABOVE: f32 = PLATE[2] + 0.005;
+/// Height of the tip as it is drawn.
+pub const TIP_HEIGHT: f32 = 3.0 * PLATE[2];
 /// The smallest table.
 const SIDE: f32 = 0.4;
 
@@ -96,7 +98,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
     let tip = position.and_then(|position| position.tip.get(cursor));
     let props = CylinderProps {
         radius: 0.004_75,
-        height: 0.06,
+        height: TIP_HEIGHT,
         color: [70, 70, 76],
         radial_segments: 24,
         look: Look::default(),
@@ -105,7 +107,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
     nodes.put(
         "/tip",
         &Cylinder::new("/tip", props),
-        tip.map(|&[x, y]| ([x, y, 0.03], 0.0)),
+        tip.map(|&[x, y]| ([x, y, 0.5 * TIP_HEIGHT], 0.0)),
     );
 
     // Only its place is predicted; it is turned as the recorded one.
