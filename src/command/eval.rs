@@ -4,6 +4,7 @@ mod entrants;
 mod figures;
 mod fit;
 mod ground;
+mod kept;
 mod ledger;
 mod names;
 mod scores;
@@ -19,9 +20,10 @@ use self::entrants::Entrant;
 use self::fit::Fit;
 use self::ground::Ground;
 use self::ledger::{Joined, Ledger};
-use self::scores::{Line, Outcome};
+use self::scores::Outcome;
 use super::{sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
+use crate::episode::EpisodeSource;
 use crate::eval::protocol::Protocol;
 use crate::eval::score::Contest;
 use crate::eval::summary::summarise;
@@ -40,9 +42,38 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     } else {
         args.model.clone()
     };
-    let entrants = entrants::open(&models)?;
+    let mut entrants = entrants::open(&models)?;
     let mut contest = contest(args, &entrants)?;
     let mut ground = Ground::of(args, &entrants)?;
+    let out = args.out.as_deref();
+    if let Some(out) = out {
+        std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
+    }
+    let mut ledger = Ledger::open(out, args.shard, &ground, &contest, &mut entrants)?;
+    let (i, n) = args.shard.unwrap_or((1, 1));
+    let own = ground.episodes.iter().copied().skip(i - 1).step_by(n);
+    let own: Vec<usize> = own.collect();
+    for (candidate, entrant) in entrants.iter().enumerate() {
+        let missing = own.iter().filter(|index| ledger.lacks(candidate, **index));
+        let missing = missing.count();
+        if entrant.scorer().is_none() && missing > 0 {
+            bail!(
+                "{} lacks {missing} of {} episodes; name the checkpoint folder instead, or finish its run",
+                entrant.path.display(),
+                own.len()
+            );
+        }
+    }
+    let lacking = |index: &usize| !ledger.lacking(*index).is_empty();
+    let left: Vec<usize> = own.iter().copied().filter(lacking).collect();
+    if let (true, Some(dataset), Some(&first)) = (args.merge, ground.dataset(), left.first()) {
+        bail!(
+            "{} of {} episodes are not scored yet, `{}` among them; run their shards, or leave out --merge",
+            left.len(),
+            own.len(),
+            dataset.metas()[first].id
+        );
+    }
     // A shard keeps scores alone, which no regressor has a part in.
     if let (Some(data), None) = (&args.fit, args.shard) {
         let fit = Fit {
@@ -54,41 +85,6 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         };
         fit.each(&mut contest.candidates, &entrants)?;
     }
-    if let Some(out) = &args.out {
-        std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
-    }
-    let mut ledger = Ledger::open(args, &ground, &contest, &entrants)?;
-    let own: Vec<usize> = match args.shard {
-        Some((i, n)) => ground
-            .episodes
-            .iter()
-            .copied()
-            .skip(i - 1)
-            .step_by(n)
-            .collect(),
-        None => ground.episodes.clone(),
-    };
-    let lacks = |index: &usize| !ledger.lacking(*index).is_empty();
-    let left: Vec<usize> = own.iter().copied().filter(lacks).collect();
-    for (candidate, entrant) in entrants.iter().enumerate() {
-        let lacks = |index: &&usize| ledger.lacking(**index).contains(&candidate);
-        let missing = own.iter().filter(lacks).count();
-        if entrant.scorer().is_none() && missing > 0 {
-            bail!(
-                "{} lacks {missing} of {} episodes; name the checkpoint folder instead, or finish its run",
-                entrant.path.display(),
-                own.len()
-            );
-        }
-    }
-    if let (true, Some(&first)) = (args.merge, left.first()) {
-        bail!(
-            "{} of {} episodes are not scored yet, {} among them; run their shards, or leave out --merge",
-            left.len(),
-            own.len(),
-            ground.name(first)
-        );
-    }
     let bar = ProgressBar::new(own.len() as u64);
     bar.set_style(ProgressStyle::with_template(
         "scoring {bar:30} {pos}/{len} episodes, {eta} left",
@@ -97,7 +93,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     for chunk in left.chunks(CHUNK) {
         if stop.load(Ordering::Relaxed) {
             bar.finish_and_clear();
-            bail!(match &args.out {
+            bail!(match out {
                 Some(_) => "stopped; go on with the same command",
                 None => "stopped",
             });
@@ -105,17 +101,15 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         let each = chunk.par_iter().map(|&index| {
             let lacking = ledger.lacking(index);
             let outcomes = ground.score(&contest, &entrants, &lacking, index)?;
-            Ok(lacking
-                .into_iter()
-                .zip(outcomes)
-                .map(move |(candidate, outcome)| (candidate, Line { index, outcome })))
+            Ok((index, lacking, outcomes))
         });
-        for lines in each.collect::<anyhow::Result<Vec<_>>>()? {
-            for (place, (candidate, line)) in lines.enumerate() {
-                if let (0, Outcome::LeftOut(why)) = (place, &line.outcome) {
-                    bar.suspend(|| eprintln!("left out: {why}"));
-                }
-                ledger.push(candidate, line)?;
+        for (index, lacking, outcomes) in each.collect::<anyhow::Result<Vec<_>>>()? {
+            let mut why = outcomes.iter().filter_map(Outcome::left_out);
+            if let Some(why) = why.next() {
+                bar.suspend(|| eprintln!("left out: {why}"));
+            }
+            for (candidate, outcome) in lacking.into_iter().zip(outcomes) {
+                ledger.push(candidate, index, outcome)?;
             }
         }
         bar.inc(chunk.len() as u64);
@@ -125,8 +119,8 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
-    let joined = ledger.joined(&contest, &own);
-    ground.scope.left_out.clone_from(&joined.left_out);
+    let mut joined = ledger.joined(&contest, &own);
+    ground.scope.left_out = std::mem::take(&mut joined.left_out);
     let scored = Scored {
         contest: &contest,
         joined: &joined,

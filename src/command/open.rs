@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::Context;
+use serde::{Deserialize, Serialize};
 
 use super::sample;
 use crate::data::{Dataset, Role};
@@ -66,13 +67,31 @@ pub fn model(folder: &Path) -> anyhow::Result<Arc<dyn Predictor>> {
     Ok(Arc::new(Trained::new(model, probe, origin)?))
 }
 
-/// The seed that the model's training cut its validation split by; 0 where its report does not say.
-pub fn split_seed(folder: &Path) -> u64 {
-    report(folder)["seed"].as_u64().unwrap_or(0)
+/// What a checkpoint's training said of itself, as far as it did.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Training {
+    /// Its seed.
+    pub seed: Option<u64>,
+    /// Updates done.
+    pub updates: Option<u64>,
+    /// The dataset's name.
+    pub data: Option<String>,
+    /// What names all that it holds.
+    pub data_hash: Option<String>,
+    /// The force that counts as contact, in newtons.
+    pub contact_newtons: Option<f32>,
 }
 
-/// What a checkpoint's training said of itself; null where it did not.
-pub fn report(folder: &Path) -> serde_json::Value {
-    let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
-    serde_json::from_str(&report).unwrap_or_default()
+impl Training {
+    /// Of the checkpoint in a folder.
+    pub fn of(folder: &Path) -> Self {
+        let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
+        serde_json::from_str(&report).unwrap_or_default()
+    }
+
+    /// The seed that it cut its validation split by; 0 where it does not say.
+    pub fn split_seed(&self) -> u64 {
+        self.seed.unwrap_or(0)
+    }
 }

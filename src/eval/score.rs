@@ -76,10 +76,15 @@ impl Contest {
     pub fn candidate(&self, subject: &Subject) -> &Candidate {
         &self.candidates[subject.candidate]
     }
+
+    /// What a candidate stands in the tables under, in the order of its rows.
+    pub fn settings(&self, candidate: usize) -> Vec<Setting> {
+        let own = self.subjects.iter().filter(|s| s.candidate == candidate);
+        own.map(|subject| subject.setting.clone()).collect()
+    }
 }
 
 /// A trained model that can be scored.
-#[derive(Debug)]
 pub struct Scorer {
     /// The model.
     pub inspector: Inspector,

@@ -75,7 +75,7 @@ pub enum Command {
     Select,
     /// Switch an expert on or off within the scope: a position in the model's list, the prior last.
     ToggleExpert(usize),
-    /// The same, but so, however it is: of two who want it off neither switches it on.
+    /// Switch it on or off whatever it is now: of two faces that want it off neither switches it on again.
     SwitchExpert {
         /// Position in the model's list, the prior last.
         expert: usize,

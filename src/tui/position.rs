@@ -72,10 +72,10 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         if at + gap + width("+ tip") <= inner.width {
             text(buf, inner, at + gap, row, "+ tip", dim());
         }
-        let mut masses = masses();
-        if inner.width >= 52 {
-            masses += &format!("; {full}: one step's σ");
-        }
+        let masses = match inner.width {
+            52.. => format!("{}; {full}: one step's σ", masses()),
+            _ => masses(),
+        };
         text(buf, inner, 0, row + 1, &masses, dim());
     }
 }

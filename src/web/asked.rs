@@ -61,8 +61,10 @@ fn numbered(text: &str) -> Option<(String, u64)> {
 }
 
 fn commands(element: &str, value: &Value, snapshot: &Snapshot) -> Option<Vec<Command>> {
-    if let Some(expert) = element.strip_prefix(SWITCH) {
-        return switch(place(expert, snapshot)?, value);
+    // The snapshot may be older than what another viewer has just asked for: what is wanted is passed on as it is.
+    if let (Some(expert), Value::Bool(on)) = (element.strip_prefix(SWITCH), value) {
+        let (expert, on) = (place(expert, snapshot)?, *on);
+        return Some(vec![Command::SwitchExpert { expert, on }]);
     }
     if let (Some(expert), Value::Number(alpha)) = (element.strip_prefix(ALPHA), value) {
         let (expert, alpha) = (place(expert, snapshot)?, tenths(*alpha));
@@ -133,14 +135,6 @@ fn place(expert: &str, snapshot: &Snapshot) -> Option<usize> {
         .experts
         .iter()
         .position(|view| view.expert.name() == expert)
-}
-
-/// The snapshot may be older than what another viewer has just asked for: what is wanted is passed on as it is.
-fn switch(expert: usize, value: &Value) -> Option<Vec<Command>> {
-    let Value::Bool(on) = *value else {
-        return None;
-    };
-    Some(vec![Command::SwitchExpert { expert, on }])
 }
 
 /// As many times faster or slower as there are factors of two between.
@@ -298,7 +292,9 @@ mod tests {
             let Asked::Commands(commands) = asked else {
                 panic!("{asked:?}");
             };
-            commands.into_iter().for_each(|c| session.apply(c));
+            for command in commands {
+                session.apply(command);
+            }
             assert!(session.wait_idle(Duration::from_secs(20)));
             session.snapshot().experts[0].alpha
         };

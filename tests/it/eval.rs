@@ -206,12 +206,18 @@ fn shards_and_interrupted_runs_come_to_the_same_bytes() {
         ),
         (
             ["--state", "alpha=vision:0.5"],
-            "holds scores under other settings, or choose another --out",
+            "holds scores under other settings; give the same --state, or choose another --out",
         ),
     ] {
         let said = complaint(bench.eval(&options).arg("--out").arg(&whole));
         assert!(said.contains(why), "{said}");
     }
+    // Nor do two runs write to one file.
+    let file = fs::File::open(score_file(&whole, "v")).unwrap();
+    file.lock().unwrap();
+    let said = complaint(bench.eval(&[]).arg("--out").arg(&whole));
+    assert!(said.contains("another run writes to it"), "{said}");
+    drop(file);
     // A model that was trained further is scored anew, and nothing of what it was before stays in the tables.
     let model = Model::new(three_experts(), 8, &Device::Cpu).unwrap();
     checkpoint::save(&model, &bench.models[2], DType::F16, None).unwrap();
@@ -278,7 +284,10 @@ fn scores_stand_for_models_without_their_weights() {
         .iter()
         .for_each(|model| fs::remove_dir_all(model).unwrap());
     let all = [v, vhp, v_h_p];
+    // Strips of an earlier run do not stay beside other tables.
     let out = bench.out("alone");
+    fs::create_dir(&out).unwrap();
+    fs::write(out.join("strips.png"), "old").unwrap();
     let mut alone = eval(&all, &["--horizon", "5"]);
     assert_eq!(answer(alone.arg("--out").arg(&out)), said);
     let mut expected = results(&whole);
@@ -389,6 +398,35 @@ fn damaged_score_files_are_refused_by_line() {
             "{said}"
         );
     }
+}
+
+#[test]
+fn the_hash_says_whose_scores_they_are() {
+    let mut bench = Bench::new();
+    bench.models.truncate(1);
+    let out = bench.out("out");
+    answer(bench.eval(&[]).arg("--out").arg(&out));
+    let expected = fs::read_to_string(out.join("tables.md")).unwrap();
+    // The folder has another name now; there is nothing left to score, and no second file.
+    let renamed = bench.out("renamed");
+    fs::rename(&bench.models[0], &renamed).unwrap();
+    bench.models[0] = renamed.clone();
+    answer(bench.eval(&["--merge"]).arg("--out").arg(&out));
+    assert_eq!(fs::read_to_string(out.join("tables.md")).unwrap(), expected);
+    // The same model twice is scored once.
+    bench.models.push(renamed);
+    let out = bench.out("twice");
+    answer(bench.eval(&[]).arg("--out").arg(&out));
+    let files = score_files(&out);
+    assert_eq!(files.len(), 1);
+    let lines = fs::read_to_string(&files[0]).unwrap().lines().count();
+    assert_eq!(lines, 1 + EPISODES);
+    let frames = csv(&out, "frames");
+    let of = |model: &str| -> Vec<String> {
+        let own = frames.iter().filter(|row| row[2] == model);
+        own.map(|row| row[4].clone()).collect()
+    };
+    assert!(of("v#1") == of("v#2") && !of("v#1").is_empty());
 }
 
 #[test]

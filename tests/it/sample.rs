@@ -27,7 +27,13 @@ fn line<'a>(frame: &'a str, label: &str) -> &'a str {
 fn the_plate_is_drawn_as_large_as_it_is_simulated() {
     let scene = poescope::sim::Scene::default();
     let simulated = [scene.plate_side_m, scene.plate_side_m, scene.plate_height_m];
-    assert_eq!(simulated.map(|m| m as f32), poescope::episode::PLATE_M);
+    let drawn = poescope::episode::PLATE_M.map(f64::from);
+    assert!(
+        simulated
+            .iter()
+            .zip(drawn)
+            .all(|(a, b)| (a - b).abs() < 1e-6)
+    );
 }
 
 #[test]

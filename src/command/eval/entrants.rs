@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::names::{Recipe, name};
 use super::scores::Scores;
-use crate::command::open;
+use crate::command::open::Training;
 use crate::eval::regression;
 use crate::eval::score::{Candidate, Scorer};
 use crate::model::checkpoint::{self, MEAN_FRAME, PROBE};
@@ -18,7 +18,6 @@ use crate::model::probe::Regressors;
 use crate::train::metrics::METRICS;
 
 /// A model that takes part.
-#[derive(Debug)]
 pub struct Entrant {
     /// What was named on the command line.
     pub path: PathBuf,
@@ -29,12 +28,11 @@ pub struct Entrant {
 }
 
 /// Where a model's scores come from.
-#[derive(Debug)]
 pub enum Source {
     /// It is scored.
     Weights(Box<Scorer>),
     /// It was.
-    Scores(Scores),
+    Scores(Box<Scores>),
 }
 
 impl Entrant {
@@ -58,19 +56,12 @@ pub struct About {
     pub mean_frame: String,
     /// Experts, sizes, and the recipe of its training.
     pub config: Config,
-    /// What the training said of itself; null where it did not.
-    pub report: Value,
+    /// What the training said of itself.
+    pub training: Training,
     /// Updates and validation PSNR of its training, as far as it left them.
     pub curve: Vec<[f64; 2]>,
     /// Its pose regressors.
     pub regressors: Option<Regressors>,
-}
-
-impl About {
-    /// The seed that its training cut its validation split by; 0 where its report does not say.
-    pub fn split_seed(&self) -> u64 {
-        self.report["seed"].as_u64().unwrap_or(0)
-    }
 }
 
 /// Opens them. They must see episodes in the same sizes.
@@ -102,14 +93,14 @@ pub fn candidates(entrants: &[Entrant]) -> Vec<Candidate> {
     let candidate = |about: &About| Candidate {
         label: String::new(),
         recipe: String::new(),
-        seed: about.report["seed"].as_u64(),
+        seed: about.training.seed,
         config: about.config.clone(),
-        contact_newtons: about.report["contact_newtons"].as_f64().map(|n| n as f32),
+        contact_newtons: about.training.contact_newtons,
         regressors: about.regressors.clone(),
     };
     let mut candidates: Vec<Candidate> = abouts().map(candidate).collect();
     let recipes: Vec<Recipe> = abouts()
-        .map(|about| Recipe::of(&about.config, &about.report))
+        .map(|about| Recipe::of(&about.config, &about.training))
         .collect();
     let folders: Vec<[String; 2]> = entrants
         .iter()
@@ -128,11 +119,12 @@ fn scores(path: &Path) -> anyhow::Result<Entrant> {
         );
     }
     let scores = Scores::read(path)?;
-    let scores = scores.with_context(|| format!("{}: no scores in it", path.display()))?;
+    let nothing = || format!("{}: no scores in it; name another file", path.display());
+    let scores = scores.with_context(nothing)?;
     Ok(Entrant {
         path: path.to_owned(),
         about: scores.head.model.clone(),
-        source: Source::Scores(scores),
+        source: Source::Scores(Box::new(scores)),
     })
 }
 
@@ -148,17 +140,14 @@ fn checkpoint(folder: &Path) -> anyhow::Result<Entrant> {
     let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
     let config = model.config.clone();
     let mean_frame = mean_frame(folder, config.frame_size)?;
-    let bytes: Vec<u8> = mean_frame
-        .iter()
-        .flat_map(|p: &f32| p.to_bits().to_le_bytes())
-        .collect();
+    let bytes: Vec<u8> = mean_frame.iter().flat_map(|p| p.to_le_bytes()).collect();
     Ok(Entrant {
         path: folder.to_owned(),
         about: About {
             folder: name,
             hash,
             mean_frame: format!("{:08x}", crc32fast::hash(&bytes)),
-            report: open::report(folder),
+            training: Training::of(folder),
             curve: curve(folder),
             regressors: regressors(&folder.join(PROBE), config.latent)?,
             config,

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use anyhow::Context;
+
 use super::Scored;
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -10,30 +12,44 @@ use crate::eval::score::Scorer;
 use crate::eval::setting::Setting;
 use crate::eval::summary::{Summary, extremes};
 use crate::export::figures::{self, Frames, Strip};
+use crate::export::plot::Plot;
 
 /// Episodes of either side in the strips.
 const STRIPS: usize = 3;
 
 /// Writes them all.
 pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Result<()> {
+    let labels = scored.contest.candidates.iter().map(|c| c.label.clone());
+    let curves = labels.zip(scored.entrants.iter().map(|e| e.about.curve.clone()));
+    for (stem, figure) in [
+        ("training", figures::training(curves.collect())),
+        ("horizons", Some(figures::horizons(summary))),
+        ("ellipses", figures::ellipses(summary)),
+        ("contact", figures::contact(summary)),
+        ("strips", best_and_worst(scored)?),
+    ] {
+        match figure {
+            Some(figure) => figure.save(out, stem)?,
+            // That of an earlier run would stand beside these tables.
+            None => {
+                for kind in ["svg", "png"] {
+                    let _ = std::fs::remove_file(out.join(format!("{stem}.{kind}")));
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The episodes in which the first of two rivals does worst against the second, and equally many the other way round; none
+/// where these cannot be drawn.
+fn best_and_worst(scored: &Scored<'_>) -> anyhow::Result<Option<Plot>> {
     let Scored {
         contest, joined, ..
     } = *scored;
     let all = &joined.all;
-    let labels = contest.candidates.iter().map(|c| c.label.clone());
-    let curves = labels.zip(scored.entrants.iter().map(|e| e.about.curve.clone()));
-    if let Some(plot) = figures::training(curves.collect()) {
-        plot.save(out, "training")?;
-    }
-    figures::horizons(summary).save(out, "horizons")?;
-    if let Some(plot) = figures::ellipses(summary) {
-        plot.save(out, "ellipses")?;
-    }
-    if let Some(plot) = figures::contact(summary) {
-        plot.save(out, "contact")?;
-    }
     let Some((dataset, rivals)) = scored.ground.dataset().zip(rivals(scored)) else {
-        return Ok(());
+        return Ok(None);
     };
     let [first, second] = rivals.map(|(place, _)| place);
     let labels = [first, second].map(|place| contest.subjects[place].label.clone());
@@ -49,12 +65,8 @@ pub fn write(scored: &Scored<'_>, summary: &Summary, out: &Path) -> anyhow::Resu
             strips.push(strip(scored, dataset, index, rivals, &against)?);
         }
     }
-    if strips.is_empty() {
-        return Ok(());
-    }
     let side = contest.candidates[0].config.frame_size;
-    figures::strips(&title, &strips, side).save(out, "strips")?;
-    Ok(())
+    Ok((!strips.is_empty()).then(|| figures::strips(&title, &strips, side)))
 }
 
 /// The rows the strips compare: `v` and `vhp` of one recipe as the paper does, else the first two models as trained.
@@ -95,12 +107,14 @@ fn strip(
     let protocol = contest.protocol;
     let layout = contest.candidates[0].config.layout();
     let episode = dataset.load(scored.joined.indices[place], layout)?;
+    let truth = episode.frames.get(protocol.context..protocol.images());
+    let truth = truth.with_context(|| {
+        let id = &episode.meta.id;
+        format!("episode `{id}` is shorter than its scores say; remove scores from --out")
+    })?;
     let mut rows = vec![Frames {
         label: "truth".to_owned(),
-        frames: episode.frames[protocol.context..protocol.images()]
-            .iter()
-            .map(|frame| frame.pixels.clone())
-            .collect(),
+        frames: truth.iter().map(|frame| frame.pixels.clone()).collect(),
     }];
     let mut errors = Vec::new();
     for (place, scorer) in rivals {

@@ -46,7 +46,9 @@ impl Fit<'_> {
         let dataset = Dataset::open_with(self.data, self.topics)?;
         let scorers = entrants.iter().filter_map(|e| Some((e, e.scorer()?)));
         for (candidate, (entrant, scorer)) in candidates.iter_mut().zip(scorers) {
-            let splits = dataset.splits(entrant.about.split_seed()).into_iter();
+            let splits = dataset
+                .splits(entrant.about.training.split_seed())
+                .into_iter();
             let own = |(i, split)| (split == Split::Train).then_some(i);
             let train: Vec<usize> = splits.enumerate().filter_map(own).collect();
             let label = candidate.label.clone();

@@ -6,13 +6,12 @@ use std::path::PathBuf;
 use anyhow::{Context, bail};
 
 use super::entrants::{Entrant, Source};
-use super::ledger::settings;
-use super::scores::Outcome;
+use super::scores::{Outcome, fault};
 use crate::cli::EvalArgs;
 use crate::command::sample;
 use crate::data::Dataset;
 use crate::episode::{Episode, EpisodeSource, Split};
-use crate::eval::score::{Contest, score};
+use crate::eval::score::{Candidate, Contest, score};
 use crate::eval::summary::Scope;
 use crate::model::observation::{self, suits};
 
@@ -29,8 +28,10 @@ pub struct Ground {
 impl Ground {
     /// What was asked for, else the sample's.
     pub fn of(args: &EvalArgs, entrants: &[Entrant]) -> anyhow::Result<Self> {
-        let published = entrants.iter().all(|entrant| entrant.scorer().is_none());
-        if let (true, None, Source::Scores(scores)) = (published, &args.data, &entrants[0].source) {
+        if args.data.is_none()
+            && let Source::Scores(scores) = &entrants[0].source
+            && entrants.iter().all(|entrant| entrant.scorer().is_none())
+        {
             if args.shard.is_some() {
                 bail!("--shard: there is nothing to score");
             }
@@ -68,32 +69,24 @@ impl Ground {
         self.dataset.as_ref().map(|(_, dataset)| dataset)
     }
 
-    /// What to call an episode.
-    pub fn name(&self, index: usize) -> String {
-        match self.dataset() {
-            Some(dataset) => format!("`{}`", dataset.metas()[index].id),
-            None => format!("number {index}"),
-        }
-    }
-
     /// Where the episodes come from, as [`Dataset::origin`] has it.
     pub fn origins(&self) -> HashSet<(&str, usize)> {
         let origin = |&i: &usize| self.dataset()?.origin(i);
         self.episodes.iter().filter_map(origin).collect()
     }
 
-    /// Scores an episode by the models that lack it, in their order, or says of each why it is left out.
+    /// Scores an episode by some candidates, or says of each why it is left out.
     pub fn score(
         &self,
         contest: &Contest,
         entrants: &[Entrant],
-        lacking: &[usize],
+        candidates: &[usize],
         index: usize,
     ) -> anyhow::Result<Vec<Outcome>> {
         let Some((path, dataset)) = &self.dataset else {
             bail!("no dataset to score on; name it by --data");
         };
-        let left_out = |why: String| vec![Outcome::LeftOut(why); lacking.len()];
+        let left_out = |why: String| vec![Outcome::LeftOut(why); candidates.len()];
         let layout = contest.candidates[0].config.layout();
         let episode = match dataset.load(index, layout) {
             Ok(episode) => episode,
@@ -103,18 +96,6 @@ impl Ground {
             return Ok(left_out(why));
         }
         let id = &episode.meta.id;
-        for candidate in &contest.candidates {
-            let missing = observation::missing(&candidate.config, &episode);
-            if !missing.is_empty() {
-                bail!(
-                    "{}: episode `{id}` lacks {}, which model `{}` sees",
-                    path.display(),
-                    missing.join(", "),
-                    candidate.label
-                );
-            }
-            suits(&candidate.config, &episode).with_context(|| path.display().to_string())?;
-        }
         let (steps, images) = (episode.steps(), contest.protocol.images());
         if steps < images {
             return Ok(left_out(format!(
@@ -122,14 +103,27 @@ impl Ground {
             )));
         }
         let by = |&candidate: &usize| {
+            let Candidate { label, config, .. } = &contest.candidates[candidate];
+            let missing = observation::missing(config, &episode);
+            if !missing.is_empty() {
+                bail!(
+                    "{}: episode `{id}` lacks {}, which model `{label}` sees",
+                    path.display(),
+                    missing.join(", ")
+                );
+            }
+            suits(config, &episode).with_context(|| path.display().to_string())?;
             let scorer = entrants[candidate].scorer().context("no weights")?;
-            let settings = settings(contest, candidate);
-            let label = &contest.candidates[candidate].label;
-            score(scorer, &settings, contest.protocol, &episode)
-                .map(Outcome::Scores)
-                .with_context(|| format!("`{label}`, episode `{id}`"))
+            let settings = contest.settings(candidate);
+            let scores = score(scorer, &settings, contest.protocol, &episode)
+                .with_context(|| format!("`{label}`, episode `{id}`"))?;
+            let sizes = [config.latent, contest.protocol.horizon, settings.len()];
+            Ok(match fault(&scores, sizes) {
+                Some(what) => Outcome::LeftOut(format!("episode `{id}` by `{label}`: {what}")),
+                None => Outcome::Scores(Box::new(scores)),
+            })
         };
-        lacking.iter().map(by).collect()
+        candidates.iter().map(by).collect()
     }
 }
 
@@ -140,9 +134,9 @@ fn wanted(
     dataset: &Dataset,
     entrants: &[Entrant],
 ) -> anyhow::Result<(Split, Vec<usize>)> {
-    let splits = |entrant: &Entrant| dataset.splits(entrant.about.split_seed());
+    let splits = |entrant: &Entrant| dataset.splits(entrant.about.training.split_seed());
     let trained_on_it = |entrant: &&Entrant| {
-        let hash = entrant.about.report["data_hash"].as_str();
+        let hash = entrant.about.training.data_hash.as_ref();
         hash.is_none_or(|hash| hash == dataset.data_hash())
     };
     let cutters: Vec<&Entrant> = entrants.iter().filter(trained_on_it).collect();

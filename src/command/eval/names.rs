@@ -1,7 +1,6 @@
 //! What the models are called: by name, by recipe where there are several, by seed within one.
 
-use serde_json::Value;
-
+use crate::command::open::Training;
 use crate::eval::score::Candidate;
 use crate::model::config::{Config, Preset};
 
@@ -19,7 +18,7 @@ pub(super) struct Recipe {
 
 impl Recipe {
     /// Of a model's config and the report of its training.
-    pub(super) fn of(config: &Config, report: &Value) -> Self {
+    pub(super) fn of(config: &Config, training: &Training) -> Self {
         let mut config = config.clone();
         for channels in [&mut config.haptic, &mut config.proprio] {
             channels.mean.clear();
@@ -41,9 +40,9 @@ impl Recipe {
         }
         Self {
             config,
-            updates: report["updates"].as_u64(),
-            data: report["data"].as_str().map(str::to_owned),
-            data_hash: report["data_hash"].as_str().map(str::to_owned),
+            updates: training.updates,
+            data: training.data.clone(),
+            data_hash: training.data_hash.clone(),
         }
     }
 
@@ -134,7 +133,6 @@ pub(super) fn name(candidates: &mut [Candidate], recipes: &[Recipe], folders: &[
 #[expect(clippy::unwrap_used, reason = "a test may stop here")]
 mod tests {
     use super::*;
-    use serde_json::json;
 
     /// Labels of `(model, preset, updates, folder)`, the first of them changed. What a folder lies in is what it was trained on.
     fn called(runs: &[(&str, Preset, u64, &str)], change: fn(&mut Config)) -> Vec<String> {
@@ -146,9 +144,14 @@ mod tests {
             if i == 0 {
                 change(&mut config);
             }
-            let data = folder.split_once('/').map(|(data, _)| data);
-            let report = json!({ "updates": updates, "data": data, "data_hash": data });
-            recipes.push(Recipe::of(&config, &report));
+            let data = folder.split_once('/').map(|(data, _)| data.to_owned());
+            let training = Training {
+                updates: Some(updates),
+                data: data.clone(),
+                data_hash: data,
+                ..Training::default()
+            };
+            recipes.push(Recipe::of(&config, &training));
             candidates.push(Candidate {
                 label: String::new(),
                 recipe: String::new(),

@@ -2,6 +2,7 @@
 //! that a model stands in later tables without being scored again.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -10,18 +11,21 @@ use anyhow::{Context, bail};
 use serde::{Deserialize, Serialize};
 
 use super::entrants::About;
+use crate::eval::credit::Credit;
 use crate::eval::protocol::Protocol;
 use crate::eval::regression;
-use crate::eval::score::{EpisodeScores, FrameScores};
+use crate::eval::score::{EpisodeScores, FrameScores, SubjectScores};
 use crate::eval::setting::Setting;
+use crate::model::probe::Regressors;
 
 /// The form of score files, counted up when what is scored or how it is written changes.
 pub const FORM: u32 = 1;
-/// Bytes of a line; that of an episode of 42 images in ten rows has 300,000.
-const MOST: u64 = 1 << 26;
+/// Bytes of a line; that of an episode of 42 images in ten rows has 300,000, and the longest there can be has 2,600 times
+/// as many images.
+const MOST: u64 = 1 << 30;
 
 /// What the scores are of: the first line of a score file.
-#[derive(Debug, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 pub struct Head {
     /// [`FORM`].
     pub scores: u32,
@@ -51,100 +55,110 @@ impl Head {
             let name = |head: &Self| format!("{} ({})", head.data, head.data_hash);
             let (own, other) = (name(self), name(wanted));
             return Some(format!(
-                "scores of {own}, not of {other}; name its dataset by --data"
+                "scores of {own}, not of {other}; name their dataset by --data, or evaluate them apart"
             ));
         }
         if self.split != wanted.split {
             let (own, other) = (&self.split, &wanted.split);
             return Some(format!(
-                "scores of split `{own}`, not of `{other}`; give --split {own}"
+                "scores of split `{own}`, not of `{other}`; give --split {own}, or evaluate them apart"
             ));
         }
-        if self.protocol != wanted.protocol {
-            return Some(format!(
+        (self.protocol != wanted.protocol).then(|| {
+            format!(
                 "scores of {context} images seen and {horizon} predicted; give --context {context} --horizon {horizon}"
-            ));
-        }
-        let other_frame = self.model.mean_frame != wanted.model.mean_frame;
-        other_frame.then(|| "scores beside another mean training frame".to_owned())
+            )
+        })
     }
 
     /// What is wrong with it: nothing that is read is taken on trust.
-    fn complaint(&self) -> Option<String> {
+    fn fault(&self) -> Option<String> {
         let About {
             config, regressors, ..
         } = &self.model;
         if let Err(error) = config.validate() {
             return Some(error.to_string());
         }
-        let fit = |r: &crate::model::probe::Regressors| r.fit(config.latent, regression::OUTPUTS);
-        if !regressors.as_ref().is_none_or(fit) {
+        let suit = |r: &Regressors| r.suit(config.latent, regression::OUTPUTS);
+        if !regressors.as_ref().is_none_or(suit) {
             return Some("its regressors are not of its model's sizes".to_owned());
         }
+        if !self.episodes.is_sorted_by(|a, b| a < b) {
+            return Some("an episode is listed twice, or out of order".to_owned());
+        }
         let Protocol { context, horizon } = self.protocol;
-        let empty = context <= config.frame_stack || horizon == 0 || self.settings.is_empty();
-        empty.then(|| "it has neither rows nor predictions".to_owned())
-    }
-
-    /// What is wrong with a line.
-    fn complaint_of(&self, scores: &EpisodeScores) -> Option<&'static str> {
-        let horizon = self.protocol.horizon;
-        let latent = self.model.config.latent;
-        let frames = |scores: &FrameScores| {
-            let FrameScores {
-                squared_error,
-                ssim,
-                psnr_db,
-            } = scores;
-            let sound = |v: &Vec<f64>| v.len() == horizon && v.iter().all(|v| v.is_finite());
-            [squared_error, ssim, psnr_db].into_iter().all(sound)
-        };
-        let rows = &scores.subjects;
-        if rows.len() != self.settings.len() {
-            return Some("not as many rows as settings");
-        }
-        let rows_frames = rows.iter().map(|row| &row.frames);
-        if !rows_frames
-            .chain([&scores.held, &scores.mean_frame])
-            .all(frames)
-        {
-            return Some("not a score for each predicted image");
-        }
-        let beliefs = |means: &Vec<f32>| {
-            means.len().is_multiple_of(latent) && means.iter().all(|mean| mean.is_finite())
-        };
-        let predicted = |means: &Vec<f32>| beliefs(means) && means.len() == horizon * latent;
-        let sound = rows
-            .iter()
-            .all(|row| beliefs(&row.filtered) && predicted(&row.predicted));
-        (!sound).then_some("beliefs that are none of its model")
+        let nothing = context <= config.frame_stack || horizon == 0 || self.settings.is_empty();
+        nothing.then(|| "its protocol or its rows are none".to_owned())
     }
 }
 
+/// What is wrong with scores of a model of so many latents, predicting so far, in so many rows. JSON has no number for
+/// what is not finite, so that such a line could not be read again.
+pub fn fault(scores: &EpisodeScores, [latent, horizon, rows]: [usize; 3]) -> Option<&'static str> {
+    let finite = |values: &[f32]| values.iter().all(|v| v.is_finite());
+    let of_images =
+        |values: &Vec<f64>| values.len() == horizon && values.iter().all(|v| v.is_finite());
+    let frames = |scores: &FrameScores| {
+        let each = [&scores.squared_error, &scores.ssim, &scores.psnr_db];
+        each.into_iter().all(of_images)
+    };
+    let credit = |credit: &Credit| {
+        let gains = credit.nll_gain.iter().chain([&credit.squared_error_gain]);
+        let values = credit.nll.iter().flatten().chain(&credit.squared_error);
+        gains.chain(values).all(|v| v.is_finite())
+    };
+    let row = |row: &SubjectScores| {
+        frames(&row.frames)
+            && row.filtered.len().is_multiple_of(latent)
+            && row.predicted.len() == horizon * latent
+            && finite(&row.filtered)
+            && finite(&row.predicted)
+            && row.credit.as_ref().is_none_or(credit)
+            && row.shares.iter().flatten().all(|shares| finite(shares))
+    };
+    if scores.subjects.len() != rows {
+        return Some("not as many rows as settings");
+    }
+    let trivial = frames(&scores.held) && frames(&scores.mean_frame);
+    let recorded = scores.poses.iter().flatten().all(|pose| finite(pose));
+    let sound = trivial && recorded && finite(&scores.force_newtons);
+    let sound = sound && scores.subjects.iter().all(row);
+    (!sound).then_some("a number that is missing or not finite")
+}
+
 /// What came of an episode.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Outcome {
     /// Why it could not be scored.
     LeftOut(String),
     /// Its scores.
-    Scores(EpisodeScores),
+    Scores(Box<EpisodeScores>),
+}
+
+impl Outcome {
+    /// Why there are no scores.
+    pub fn left_out(&self) -> Option<&str> {
+        match self {
+            Self::LeftOut(why) => Some(why),
+            Self::Scores(_) => None,
+        }
+    }
 }
 
 /// A further line of a score file.
-#[derive(Debug, Serialize, Deserialize)]
-pub struct Line {
+#[derive(Serialize, Deserialize)]
+pub struct Line<O> {
     /// Its place in the dataset.
     pub index: usize,
-    /// What came of it.
-    pub outcome: Outcome,
+    /// What came of it: an [`Outcome`].
+    pub outcome: O,
 }
 
 /// Outcomes by their episodes' places.
 pub type Outcomes = BTreeMap<usize, Outcome>;
 
 /// A score file that was read.
-#[derive(Debug)]
 pub struct Scores {
     /// What they are of.
     pub head: Head,
@@ -157,51 +171,62 @@ pub struct Scores {
 impl Scores {
     /// Reads a score file, as it is or packed by `zstd`, but for a torn last line; none where not even its head is whole.
     pub fn read(path: &Path) -> anyhow::Result<Option<Self>> {
-        let name = || path.display().to_string();
-        let file = File::open(path).with_context(name)?;
+        let name = path.display();
+        let file = File::open(path).with_context(|| name.to_string())?;
         let packed = path.extension().is_some_and(|extension| extension == "zst");
         let source: Box<dyn Read> = if packed {
-            Box::new(zstd::Decoder::new(file).with_context(name)?)
+            Box::new(zstd::Decoder::new(file).with_context(|| name.to_string())?)
         } else {
             Box::new(file)
         };
         let mut source = BufReader::new(source);
-        let mut line = || -> anyhow::Result<Option<Vec<u8>>> {
+        let mut read = None::<Self>;
+        let mut number = 0;
+        loop {
             let mut text = Vec::new();
-            source
-                .by_ref()
-                .take(MOST)
-                .read_until(b'\n', &mut text)
-                .with_context(name)?;
-            Ok((text.last() == Some(&b'\n')).then_some(text))
-        };
-        let Some(text) = line()? else {
-            return Ok(None);
-        };
-        let head = head(&text).with_context(name)?;
-        let mut scores = Self {
-            head,
-            outcomes: Outcomes::new(),
-            whole: text.len() as u64,
-        };
-        let mut number = 1;
-        while let Some(text) = line()? {
+            let mut line = source.by_ref().take(MOST);
+            line.read_until(b'\n', &mut text)
+                .with_context(|| name.to_string())?;
             number += 1;
-            let damaged =
-                |what: String| format!("{}: line {number} is damaged: {what}", path.display());
-            let Line { index, outcome } = match serde_json::from_slice(&text) {
-                Ok(line) => line,
-                Err(error) => bail!(damaged(error.to_string())),
+            let damaged = |what: &dyn Display| {
+                format!(
+                    "{name}: line {number} is damaged: {what}; remove the file, or name another"
+                )
             };
-            if let Outcome::Scores(own) = &outcome
-                && let Some(what) = scores.head.complaint_of(own)
-            {
-                bail!(damaged(what.to_owned()));
+            if text.len() as u64 == MOST {
+                bail!(damaged(&"longer than an episode's can be"));
             }
-            scores.outcomes.insert(index, outcome);
-            scores.whole += text.len() as u64;
+            if text.last() != Some(&b'\n') {
+                return Ok(read);
+            }
+            let bytes = text.len() as u64;
+            let Some(scores) = &mut read else {
+                read = Some(Self {
+                    head: head(&text).with_context(|| name.to_string())?,
+                    outcomes: Outcomes::new(),
+                    whole: bytes,
+                });
+                continue;
+            };
+            let line: Line<Outcome> = match serde_json::from_slice(&text) {
+                Ok(line) => line,
+                Err(error) => bail!(damaged(&error)),
+            };
+            let Head {
+                model,
+                protocol,
+                settings,
+                ..
+            } = &scores.head;
+            let sizes = [model.config.latent, protocol.horizon, settings.len()];
+            if let Outcome::Scores(own) = &line.outcome
+                && let Some(what) = fault(own, sizes)
+            {
+                bail!(damaged(&what));
+            }
+            scores.outcomes.insert(line.index, line.outcome);
+            scores.whole += bytes;
         }
-        Ok(Some(scores))
     }
 }
 
@@ -216,6 +241,6 @@ fn head(text: &[u8]) -> anyhow::Result<Head> {
         bail!("a score file of form {scores}, this poescope reads form {FORM}; score anew");
     }
     let head: Head = serde_json::from_slice(text).context("a damaged score file")?;
-    head.complaint()
+    head.fault()
         .map_or(Ok(head), |what| bail!("a damaged score file: {what}"))
 }

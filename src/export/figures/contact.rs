@@ -50,9 +50,8 @@ pub fn contact(summary: &Summary) -> Option<Plot> {
                 "share of precision".to_owned(),
             ],
             series,
-            equal: false,
             from_zero: true,
-            ends: None,
+            ..Panel::default()
         };
         let at = [
             (i % columns) as f32 * size[0],

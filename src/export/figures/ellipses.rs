@@ -59,8 +59,7 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
         axes: ["|x error|, cm".to_owned(), "|y error|, cm".to_owned()],
         series,
         equal: true,
-        from_zero: false,
-        ends: None,
+        ..Panel::default()
     };
     let mut plot = panel.draw();
     style::below(&mut plot, &style::named(&labels));

@@ -77,8 +77,7 @@ fn panel(rows: &[&Quality], k: usize, recipe: &str) -> Panel {
         },
         axes: ["images after the context".to_owned(), unit.to_owned()],
         series: series.collect(),
-        equal: false,
         from_zero: k == 0,
-        ends: None,
+        ..Panel::default()
     }
 }

@@ -25,9 +25,7 @@ pub fn training(curves: Vec<(String, Vec<[f64; 2]>)>) -> Option<Plot> {
         title: "Open-loop prediction of validation episodes while training".to_owned(),
         axes: ["updates".to_owned(), "PSNR, dB".to_owned()],
         series,
-        equal: false,
-        from_zero: false,
-        ends: None,
+        ..Panel::default()
     };
     let mut plot = panel.draw();
     style::below(&mut plot, &named);

@@ -7,6 +7,9 @@ pub fn ticks([low, high]: [f64; 2], count: usize) -> Vec<f64> {
         return Vec::new();
     }
     let unit = 10_f64.powf(rough.log10().floor());
+    if !unit.is_normal() {
+        return Vec::new();
+    }
     let step = [1.0, 2.0, 5.0, 10.0]
         .into_iter()
         .map(|m| m * unit)

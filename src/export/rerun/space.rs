@@ -6,7 +6,7 @@ use ::rerun::{LineStrips3D, RecordingStreamResult, ViewCoordinates};
 use super::log::{AtSteps, Log};
 use super::style::{self, Rgb};
 use super::{Shown, each};
-use crate::episode::PLATE_M as PLATE;
+use crate::episode::{PLATE_M as PLATE, TIP_HEIGHT_M};
 use crate::export::Run;
 use crate::export::step::Step;
 use crate::measure::ellipse::{Ellipse, SIGMAS_OF_95_PERCENT};
@@ -15,7 +15,7 @@ use crate::session::snapshot::Estimate;
 /// What all of it lies under.
 pub(super) const ROOT: &str = "table";
 /// Sides and height of the tip as it is drawn.
-const TIP: [f32; 3] = [0.0095, 0.0095, 3.0 * PLATE[2]];
+const TIP: [f32; 3] = [0.0095, 0.0095, TIP_HEIGHT_M];
 /// Just above the plate: what is drawn about it is to be seen.
 const ABOVE: f32 = PLATE[2] + 0.005;
 /// Half the width of paths.

@@ -51,7 +51,7 @@ impl Regressors {
     }
 
     /// Whether they read `outputs` numbers from `latent` ones, and all of theirs are finite.
-    pub fn fit(&self, latent: usize, outputs: usize) -> bool {
+    pub fn suit(&self, latent: usize, outputs: usize) -> bool {
         let sizes = [[latent, outputs], [latent, UNITS], [UNITS, outputs]];
         let sound = |(linear, [inputs, outputs]): (&Linear, [usize; 2])| {
             let Linear { weight, bias } = linear;

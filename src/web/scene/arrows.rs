@@ -1,7 +1,8 @@
 //! What each sensor pulls the belief by, head to tail from the prior's place, and the force of contact.
 
 use super::nodes::{Nodes, Point};
-use super::table::{ABOVE, TIP_HEIGHT};
+use super::table::ABOVE;
+use crate::episode::TIP_HEIGHT_M as TIP_HEIGHT;
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
 

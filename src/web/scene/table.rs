@@ -1,7 +1,7 @@
 //! The table with the plate on it, the tip that pushes, and where the plate is believed and predicted to be.
 
 use super::nodes::{Nodes, Point};
-use crate::episode::PLATE_M as PLATE;
+use crate::episode::{PLATE_M as PLATE, TIP_HEIGHT_M as TIP_HEIGHT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 use crate::web::protocol::camera::{CameraLookAt, CameraPosition};
 use crate::web::protocol::grid::{Grid, GridProps};
@@ -15,8 +15,6 @@ pub const PREDICTION: [u8; 3] = [0x56, 0xB4, 0xE9];
 pub const BELIEF: [u8; 3] = [0x40, 0x40, 0x40];
 /// Just above the plate: what is drawn about it is to be seen.
 pub const ABOVE: f32 = PLATE[2] + 0.005;
-/// Height of the tip as it is drawn.
-pub const TIP_HEIGHT: f32 = 3.0 * PLATE[2];
 /// The smallest table.
 const SIDE: f32 = 0.4;
 

@@ -1,0 +1,230 @@
+//! The score files of one model in a folder: read whole, and one of them gone on with.
+
+use std::fs::{File, OpenOptions};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+
+use super::scores::{Head, Line, Outcome, Outcomes, Scores};
+
+/// Outcomes of a model, and the file that new ones go to.
+#[derive(Default)]
+pub struct Kept {
+    outcomes: Outcomes,
+    sink: Option<Sink>,
+}
+
+impl Kept {
+    /// To which nothing is added.
+    pub fn fixed(outcomes: Outcomes) -> Self {
+        Self {
+            outcomes,
+            sink: None,
+        }
+    }
+
+    /// Reads every score file of this model in `folder` and goes on with the shard's own, or with the whole run's, which
+    /// takes in what shards have left.
+    pub fn open(folder: &Path, head: &Head, shard: Option<(usize, usize)>) -> anyhow::Result<Self> {
+        let stem = format!("{}-{}", head.model.folder, head.model.hash);
+        let path = folder.join(match shard {
+            Some((i, n)) => format!("{stem}-{i}-of-{n}.jsonl"),
+            None => format!("{stem}.jsonl"),
+        });
+        let mut outcomes = Outcomes::new();
+        for sibling in siblings(folder, &head.model.hash)? {
+            if sibling != path {
+                let scores = admitted(&sibling, head)?.into_iter();
+                outcomes.extend(scores.flat_map(|scores| scores.outcomes));
+            }
+        }
+        let mut sink = Sink {
+            path,
+            head: serde_json::to_string(head)? + "\n",
+            file: None,
+        };
+        // Nobody else writes to it from here on, so that what is read and cut is what it stays.
+        let own = if sink.path.exists() {
+            sink.take_up()?;
+            admitted(&sink.path, head)?
+        } else {
+            None
+        };
+        if sink.file.is_some() {
+            let whole = own.as_ref().map_or(0, |own| own.whole);
+            sink.cut(whole)?;
+            if whole == 0 {
+                sink.write(&sink.head)?;
+            }
+        }
+        let known = own.as_ref().map_or(0, |own| own.outcomes.len());
+        let as_is = own.as_ref().is_none_or(|Scores { head: own, .. }| {
+            own.model == head.model && own.episodes == head.episodes
+        });
+        outcomes.extend(own.into_iter().flat_map(|own| own.outcomes));
+        if shard.is_none() && (!as_is || outcomes.len() > known) {
+            sink.rewrite(&outcomes)?;
+        }
+        Ok(Self {
+            outcomes,
+            sink: Some(sink),
+        })
+    }
+
+    /// Whether an episode is done with.
+    pub fn has(&self, index: usize) -> bool {
+        self.outcomes.contains_key(&index)
+    }
+
+    /// Takes out what came of an episode.
+    pub fn take(&mut self, index: usize) -> Option<Outcome> {
+        self.outcomes.remove(&index)
+    }
+
+    /// Adds what came of an episode.
+    pub fn push(&mut self, index: usize, outcome: Outcome) -> anyhow::Result<()> {
+        if let Some(sink) = &mut self.sink {
+            sink.push(&line(index, &outcome)?)?;
+        }
+        self.outcomes.insert(index, outcome);
+        Ok(())
+    }
+}
+
+fn line(index: usize, outcome: &Outcome) -> serde_json::Result<String> {
+    Ok(serde_json::to_string(&Line { index, outcome })? + "\n")
+}
+
+/// Reads a score file of a folder, if it can stand for what is wanted.
+fn admitted(path: &Path, wanted: &Head) -> anyhow::Result<Option<Scores>> {
+    let scores = Scores::read(path)?;
+    let refusal = scores.as_ref().and_then(|Scores { head, .. }| {
+        let others = [
+            (
+                head.settings != wanted.settings,
+                "scores under other settings; give the same --state",
+            ),
+            (
+                head.model.mean_frame != wanted.model.mean_frame,
+                "scores beside another mean training frame; remove it",
+            ),
+        ];
+        let other = others.into_iter().find(|(differ, _)| *differ);
+        let other = other.map(|(_, why)| why.to_owned());
+        head.refusal(wanted).or(other)
+    });
+    if let Some(why) = refusal {
+        bail!("{} holds {why}, or choose another --out", path.display());
+    }
+    Ok(scores)
+}
+
+/// The score files of a model: of whole runs, and of shards. Its hash alone says whose they are; a folder may have had
+/// another name.
+fn siblings(folder: &Path, hash: &str) -> anyhow::Result<Vec<PathBuf>> {
+    if !folder.exists() {
+        return Ok(Vec::new());
+    }
+    let ends = format!("-{hash}");
+    let is_one = |name: &str| {
+        let stem = name.strip_suffix(".jsonl")?;
+        let whole = stem.rsplit_once("-of-").and_then(|(stem, n)| {
+            let (stem, i) = stem.rsplit_once('-')?;
+            let numbers = [i, n].iter().all(|n| n.parse::<usize>().is_ok());
+            numbers.then_some(stem)
+        });
+        Some(whole.unwrap_or(stem).ends_with(&ends))
+    };
+    let mut found = Vec::new();
+    let failed = || folder.display().to_string();
+    for entry in std::fs::read_dir(folder).with_context(failed)? {
+        let name = entry.with_context(failed)?.file_name();
+        if is_one(&name.to_string_lossy()) == Some(true) {
+            found.push(folder.join(name));
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// A score file that grows. It is made when there is something to write: a command that fails leaves none.
+struct Sink {
+    path: PathBuf,
+    /// Its first line.
+    head: String,
+    /// Once it is made, and nobody else's.
+    file: Option<File>,
+}
+
+impl Sink {
+    /// Opens it, for this run alone.
+    fn take_up(&mut self) -> anyhow::Result<()> {
+        let failed = || self.path.display().to_string();
+        if let Some(folder) = self.path.parent() {
+            std::fs::create_dir_all(folder).with_context(failed)?;
+        }
+        let file = OpenOptions::new()
+            .create(true)
+            .append(true)
+            .open(&self.path);
+        let file = file.with_context(failed)?;
+        if let Err(std::fs::TryLockError::WouldBlock) = file.try_lock() {
+            bail!(
+                "{}: another run writes to it; wait for its end, or choose another --out",
+                self.path.display()
+            );
+        }
+        self.file = Some(file);
+        Ok(())
+    }
+
+    /// Cuts off what stands after so many bytes: a kill may have left half a line.
+    fn cut(&self, whole: u64) -> anyhow::Result<()> {
+        let failed = || self.path.display().to_string();
+        self.file
+            .as_ref()
+            .map_or(Ok(()), |file| file.set_len(whole))
+            .with_context(failed)
+    }
+
+    fn push(&mut self, line: &str) -> anyhow::Result<()> {
+        if self.file.is_none() {
+            self.take_up()?;
+            let length = self.file.as_ref().map(File::metadata).transpose()?;
+            if length.is_some_and(|file| file.len() > 0) {
+                bail!(
+                    "{}: another run has written it meanwhile; go on with the same command",
+                    self.path.display()
+                );
+            }
+            self.write(&self.head)?;
+        }
+        // One write a line: a kill leaves at most the last one torn.
+        self.write(line)
+    }
+
+    fn write(&self, text: &str) -> anyhow::Result<()> {
+        let failed = || self.path.display().to_string();
+        let mut file = self.file.as_ref().with_context(failed)?;
+        file.write_all(text.as_bytes()).with_context(failed)
+    }
+
+    /// Writes all of it anew, beside it first, so that nothing is lost on the way.
+    fn rewrite(&mut self, outcomes: &Outcomes) -> anyhow::Result<()> {
+        let beside = self.path.with_extension("part");
+        let failed = || beside.display().to_string();
+        let mut file = BufWriter::new(File::create(&beside).with_context(failed)?);
+        file.write_all(self.head.as_bytes()).with_context(failed)?;
+        for (&index, outcome) in outcomes {
+            file.write_all(line(index, outcome)?.as_bytes())
+                .with_context(failed)?;
+        }
+        let file = file
+            .into_inner()
+            .map_err(std::io::IntoInnerError::into_error);
+        file.and_then(|file| file.sync_all()).with_context(failed)?;
+        std::fs::rename(&beside, &self.path).with_context(failed)?;
+        self.take_up()
+    }
+}
