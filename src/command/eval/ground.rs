@@ -96,14 +96,8 @@ impl Ground {
             return Ok(left_out(why));
         }
         let id = &episode.meta.id;
-        let (steps, images) = (episode.steps(), contest.protocol.images());
-        if steps < images {
-            return Ok(left_out(format!(
-                "episode `{id}` has {steps} images of {images}; choose a smaller --horizon"
-            )));
-        }
-        let by = |&candidate: &usize| {
-            let Candidate { label, config, .. } = &contest.candidates[candidate];
+        let of = |candidate: &usize| &contest.candidates[*candidate];
+        for Candidate { label, config, .. } in candidates.iter().map(of) {
             let missing = observation::missing(config, &episode);
             if !missing.is_empty() {
                 bail!(
@@ -113,6 +107,15 @@ impl Ground {
                 );
             }
             suits(config, &episode).with_context(|| path.display().to_string())?;
+        }
+        let (steps, images) = (episode.steps(), contest.protocol.images());
+        if steps < images {
+            return Ok(left_out(format!(
+                "episode `{id}` has {steps} images of {images}; choose a smaller --horizon"
+            )));
+        }
+        let by = |&candidate: &usize| {
+            let Candidate { label, config, .. } = of(&candidate);
             let scorer = entrants[candidate].scorer().context("no weights")?;
             let settings = contest.settings(candidate);
             let scores = score(scorer, &settings, contest.protocol, &episode)
