@@ -335,6 +335,27 @@ fn scores_stand_for_models_without_their_weights() {
 }
 
 #[test]
+fn the_scores_in_the_results_say_what_the_results_say() {
+    let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let mut files: Vec<PathBuf> = fs::read_dir(docs.join("results/pybullet/scores"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    files.sort();
+    let mut eval = poescope();
+    eval.args(["eval", "--json"]);
+    eval.args(files.iter().flat_map(|file| [Path::new("--model"), file]));
+    let report: Value = serde_json::from_str(&answer(&mut eval)).unwrap();
+    let results = fs::read_to_string(docs.join("results.md")).unwrap();
+    let rows = report["quality"].as_array().unwrap();
+    assert!(rows.len() >= 5 && report["episodes"] == 80);
+    for row in rows {
+        let psnr = format!("| {:.2} |", row["psnr_db"]["mean"].as_f64().unwrap());
+        assert!(results.contains(&psnr), "{}: {psnr}", row["subject"]);
+    }
+}
+
+#[test]
 fn damaged_score_files_are_refused_by_line() {
     let mut bench = Bench::new();
     bench.models.truncate(2);
