@@ -133,7 +133,8 @@ pub struct Flag {
     pub what: String,
 }
 
-/// Sides and height of the object as it is drawn, in metres: those of the paper's plate, for a recording does not say them.
+/// Sides and height of the object as it is drawn, in metres: those of the plate that both samples push, for a recording
+/// does not say them.
 pub const PLATE_M: [f32; 3] = [0.14, 0.14, 0.03];
 /// Height of the tip as it is drawn, in metres.
 pub const TIP_HEIGHT_M: f32 = 0.09;

@@ -157,13 +157,18 @@ pub struct EpisodeScores {
     pub subjects: Vec<SubjectScores>,
 }
 
-/// The images to predict.
-fn targets(episode: &Episode, protocol: Protocol) -> Vec<(Vec<f32>, usize)> {
-    let frames = &episode.frames[protocol.context..protocol.images()];
-    frames
-        .iter()
-        .map(|frame: &Frame| (grey(frame), frame.width))
-        .collect()
+/// The images to predict, of an episode of `protocol.images()` images or more.
+fn targets(episode: &Episode, protocol: Protocol) -> Result<Vec<(Vec<f32>, usize)>> {
+    let Some(frames) = episode.frames.get(protocol.context..protocol.images()) else {
+        candle_core::bail!(
+            "episode `{}` has {} images, {} are needed",
+            episode.meta.id,
+            episode.steps(),
+            protocol.images()
+        );
+    };
+    let target = |frame: &Frame| (grey(frame), frame.width);
+    Ok(frames.iter().map(target).collect())
 }
 
 /// Scores a model under each setting on an episode of `protocol.images()` images or more.
@@ -173,38 +178,33 @@ pub fn score(
     protocol: Protocol,
     episode: &Episode,
 ) -> Result<EpisodeScores> {
-    let mut scores = trivial(&scorer.mean_frame, protocol, episode)?;
-    let truth = targets(episode, protocol);
-    for setting in settings {
-        let row = row(scorer, setting, protocol, episode, &truth)?;
-        scores.subjects.push(row);
-    }
-    Ok(scores)
+    let truth = targets(episode, protocol)?;
+    let row = |setting| row(scorer, setting, protocol, episode, &truth);
+    Ok(EpisodeScores {
+        subjects: settings.iter().map(row).collect::<Result<_>>()?,
+        ..trivial(&scorer.mean_frame, protocol, episode, &truth)
+    })
 }
 
 /// What is known of an episode without a model.
-fn trivial(mean_frame: &[f32], protocol: Protocol, episode: &Episode) -> Result<EpisodeScores> {
-    if episode.steps() < protocol.images() {
-        candle_core::bail!(
-            "episode `{}` has {} images, {} are needed",
-            episode.meta.id,
-            episode.steps(),
-            protocol.images()
-        );
-    }
-    let truth = targets(episode, protocol);
+fn trivial(
+    mean_frame: &[f32],
+    protocol: Protocol,
+    episode: &Episode,
+    truth: &[(Vec<f32>, usize)],
+) -> EpisodeScores {
     let held = grey(&episode.frames[protocol.context - 1]);
     let poses = episode.object.as_ref();
-    Ok(EpisodeScores {
+    EpisodeScores {
         episode: episode.meta.id.clone(),
         poses: poses.map(|poses| poses.iter().map(|p| [p.x, p.y, p.yaw]).collect()),
         force_newtons: (0..episode.steps())
             .map_while(|t| episode.force_newtons(t))
             .collect(),
-        held: FrameScores::of(std::iter::repeat(held.as_slice()), &truth),
-        mean_frame: FrameScores::of(std::iter::repeat(mean_frame), &truth),
+        held: FrameScores::of(std::iter::repeat(held.as_slice()), truth),
+        mean_frame: FrameScores::of(std::iter::repeat(mean_frame), truth),
         subjects: Vec::new(),
-    })
+    }
 }
 
 /// Scores one row.
@@ -280,7 +280,8 @@ mod tests {
             context: 3,
             horizon: 4,
         };
-        let scores = trivial(&[60.0 / 255.0; 64], protocol, &ramp(8)).unwrap();
+        let truth = targets(&ramp(8), protocol).unwrap();
+        let scores = trivial(&[60.0 / 255.0; 64], protocol, &ramp(8), &truth);
         // Image 3 of 1.. is held, of grey 20; predicted are greys 30 to 60.
         let error = |grey: f64| 64.0 * (grey / 255.0).powi(2);
         for (h, off) in [10.0, 20.0, 30.0, 40.0].into_iter().enumerate() {
@@ -290,6 +291,6 @@ mod tests {
             assert!((scores.mean_frame.squared_error[h] - error(40.0 - off)).abs() < 1e-5);
         }
         assert_eq!(scores.held.ssim.len(), 4);
-        assert!(trivial(&[], protocol, &ramp(6)).is_err());
+        assert!(targets(&ramp(6), protocol).is_err());
     }
 }

@@ -36,15 +36,14 @@ pub struct Fit<'a> {
 impl Fit<'_> {
     /// Fits those of each candidate.
     pub fn each(&self, candidates: &mut [Candidate], entrants: &[Entrant]) -> anyhow::Result<()> {
-        let weightless = entrants.iter().find(|entrant| entrant.scorer().is_none());
-        if let Some(Entrant { path, .. }) = weightless {
-            bail!(
-                "--fit: {} has scores alone; name the checkpoint folder instead",
-                path.display()
-            );
+        let mut scorers = Vec::with_capacity(entrants.len());
+        for entrant in entrants {
+            let path = entrant.path.display();
+            let weightless =
+                || format!("--fit: {path} has scores alone; name the checkpoint folder instead");
+            scorers.push((entrant, entrant.scorer().with_context(weightless)?));
         }
         let dataset = Dataset::open_with(self.data, self.topics)?;
-        let scorers = entrants.iter().filter_map(|e| Some((e, e.scorer()?)));
         for (candidate, (entrant, scorer)) in candidates.iter_mut().zip(scorers) {
             let splits = dataset
                 .splits(entrant.about.training.split_seed())

@@ -46,6 +46,7 @@ mod tests {
         assert_eq!(small, ["0.85", "0.90", "0.95"]);
         assert_eq!(ticks([1.0, 1.0], 4), [0.0; 0]);
         assert_eq!(ticks([0.0, f64::NAN], 4), [0.0; 0]);
+        assert_eq!(ticks([0.0, 3e-323], 4), [0.0; 0]);
         assert_eq!(label(-0.0, 1.0), "0");
     }
 }
