@@ -11,7 +11,7 @@ use crate::episode::Split;
 /// Arguments of `eval`.
 #[derive(Debug, Args)]
 pub struct EvalArgs {
-    /// Dataset to score on [default: the sample episodes]
+    /// Dataset to score on: an .mcap file or a folder of them, or the name of a sample, `pybullet` [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
     /// Checkpoint folder, or the scores that an earlier run left of one; repeat for several

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use self::entrants::Entrant;
 use self::fit::Fit;
 use self::ground::Ground;
-use self::ledger::{Joined, Ledger};
+use self::ledger::{Joined, Ledger, Place};
 use self::scores::Outcome;
 use super::{sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
@@ -49,7 +49,12 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     if let Some(out) = out {
         std::fs::create_dir_all(out).with_context(|| format!("making {}", out.display()))?;
     }
-    let mut ledger = Ledger::open(out, args.shard, &ground, &contest, &mut entrants)?;
+    let place = Place {
+        out,
+        shard: args.shard,
+        merge: args.merge,
+    };
+    let mut ledger = Ledger::open(place, &ground, &contest, &mut entrants)?;
     let (i, n) = args.shard.unwrap_or((1, 1));
     let own = ground.episodes.iter().copied().skip(i - 1).step_by(n);
     let own: Vec<usize> = own.collect();
@@ -90,6 +95,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         "scoring {bar:30} {pos}/{len} episodes, {eta} left",
     )?);
     bar.inc((own.len() - left.len()) as u64);
+    let mut left_out: Vec<String> = Vec::new();
     for chunk in left.chunks(CHUNK) {
         if stop.load(Ordering::Relaxed) {
             bar.finish_and_clear();
@@ -105,9 +111,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         });
         for (index, lacking, outcomes) in each.collect::<anyhow::Result<Vec<_>>>()? {
             let mut why = outcomes.iter().filter_map(Outcome::left_out);
-            if let Some(why) = why.next() {
-                bar.suspend(|| eprintln!("left out: {why}"));
-            }
+            left_out.extend(why.next().map(str::to_owned));
             for (candidate, outcome) in lacking.into_iter().zip(outcomes) {
                 ledger.push(candidate, index, outcome)?;
             }
@@ -115,6 +119,10 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         bar.inc(chunk.len() as u64);
     }
     bar.finish_and_clear();
+    // Where nothing is left, that is the error, and why.
+    if left_out.len() < own.len() {
+        left_out.iter().for_each(|why| eprintln!("left out: {why}"));
+    }
     if args.shard.is_some() {
         eprintln!("this shard is scored; sum up with --merge once all are");
         return Ok(());
@@ -147,7 +155,7 @@ fn contest(args: &EvalArgs, entrants: &[Entrant]) -> anyhow::Result<Contest> {
             bail!("--context must be more than {stack}");
         }
     }
-    let subjects = settings::subjects(&candidates, &args.state, protocol)?;
+    let subjects = settings::subjects(&candidates, &args.state)?;
     Ok(Contest {
         candidates,
         subjects,

@@ -42,7 +42,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let mut session = Session::new(Arc::clone(&dataset) as _, models.clone());
     let plan = Plan {
         episodes: choose::episodes(&dataset, &session, args, state.as_ref(), || {
-            open::Training::of(&folders[0]).split_seed()
+            Ok(open::Training::of(&folders[0])?.split_seed())
         })?,
         split: args.split,
         steps: choose::steps(args, state.as_ref()),

@@ -1,5 +1,6 @@
 //! Opens a dataset and models by their names on the command line, for whatever shows them.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -12,6 +13,8 @@ use crate::model::checkpoint::{self, CONFIG};
 use crate::model::observation::suits;
 use crate::session::predict::Predictor;
 use crate::session::trained::{Origin, Trained};
+use crate::train;
+use crate::train::state::STATE;
 
 /// The checkpoint folders that were asked for, else the one that suits the dataset asked for best.
 pub fn folders(asked: &[PathBuf], data: Option<&PathBuf>) -> anyhow::Result<Vec<PathBuf>> {
@@ -84,10 +87,30 @@ pub struct Training {
 }
 
 impl Training {
-    /// Of the checkpoint in a folder.
-    pub fn of(folder: &Path) -> Self {
-        let report = std::fs::read_to_string(folder.join(checkpoint::REPORT)).unwrap_or_default();
-        serde_json::from_str(&report).unwrap_or_default()
+    /// Of the checkpoint in a folder, by its report; while its run goes on, by what that was started with.
+    ///
+    /// # Errors
+    /// If what is there cannot be read: without its seed a model might be scored on what it was trained on.
+    pub fn of(folder: &Path) -> anyhow::Result<Self> {
+        let path = folder.join(checkpoint::REPORT);
+        match std::fs::read_to_string(&path) {
+            Ok(report) => serde_json::from_str(&report).with_context(|| {
+                let path = path.display();
+                format!("{path}: not the report of a training; copy the checkpoint anew")
+            }),
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Err(error).with_context(|| path.display().to_string())
+            }
+            Err(_) if folder.join(STATE).exists() => {
+                let run = train::state::Origin::read(folder)?;
+                Ok(Self {
+                    seed: Some(run.seed),
+                    data_hash: Some(run.data_hash),
+                    ..Self::default()
+                })
+            }
+            Err(_) => Ok(Self::default()),
+        }
     }
 
     /// The seed that it cut its validation split by; 0 where it does not say.

@@ -33,8 +33,7 @@ pub(super) fn align_on(
     topics: &Topics,
 ) -> Result<Episode, DataError> {
     let (steps_nanos, frames) = steps(recording);
-    let (&[first, second, ..], [.., last]) = (steps_nanos.as_slice(), steps_nanos.as_slice())
-    else {
+    let &[first, second, ..] = steps_nanos.as_slice() else {
         return Err(DataError::TooFewImages {
             place: format!("episode {:?}", recording.meta.id),
             images: steps_nanos.len(),
@@ -89,7 +88,7 @@ pub(super) fn align_on(
         controls,
         object,
         tip,
-        flags: flags(recording, topics, (first, *last)),
+        flags: flags(recording, topics, &steps_nanos),
         steps_nanos,
     })
 }
@@ -126,7 +125,7 @@ fn since(origin: i64, stamp: i64) -> f64 {
 }
 
 /// What was odd: what the recording says already, then each stream's gaps, backward stamps and values that are none.
-fn flags(recording: &Recording, topics: &Topics, steps: (i64, i64)) -> Vec<Flag> {
+fn flags(recording: &Recording, topics: &Topics, steps_nanos: &[i64]) -> Vec<Flag> {
     fn stamps<const N: usize>(track: &Track<N>) -> &[i64] {
         &track.stamps_nanos
     }
@@ -140,9 +139,17 @@ fn flags(recording: &Recording, topics: &Topics, steps: (i64, i64)) -> Vec<Flag>
     ];
     let mut flags = recording.flags.clone();
     for (role, stamps) in streams {
-        // No command follows the last image, so only what is sensed must last until then.
-        let cover = (role != Role::Control).then_some(steps);
-        irregular::find(topics.topic(role), stamps, cover, &mut flags);
+        let covered = match (role, stamps, steps_nanos) {
+            // One command may hold all along.
+            (Role::Control, [_], _) => continue,
+            // The one at the last image moves nothing any more.
+            (Role::Control, _, [rest @ .., _]) => rest,
+            (_, _, all) => all,
+        };
+        let (Some(&from), Some(&until)) = (covered.first(), covered.last()) else {
+            continue;
+        };
+        irregular::find(topics.topic(role), stamps, (from, until), &mut flags);
     }
     let broken = [
         (Role::Haptic, irregular::not_finite(&recording.wrench)),

@@ -150,7 +150,8 @@ impl Index {
         self.episodes.push(meta);
     }
 
-    /// Sets the data hash: of the length, of the bytes that index the file, and of the episode records.
+    /// Sets the data hash: of the length, of the bytes that index the file and sum up what is not packed, and of the
+    /// episode records.
     pub(super) fn seal(&mut self, indexing: &[u8]) {
         let mut hash = Fnv::new();
         hash.update(&self.bytes.to_le_bytes());

@@ -30,6 +30,7 @@ pub(super) fn read(file: &mut File, length: u64) -> Result<Index, String> {
     let header = record_at(file, length, MAGIC.len() as u64)?;
     index.describe(parse(op::HEADER, &header)?);
     let mut statistics = None;
+    let mut unpacked = Vec::new();
     let mut metadata = Vec::new();
     for record in Records::new(section) {
         let (opcode, body) = record?;
@@ -38,6 +39,9 @@ pub(super) fn read(file: &mut File, length: u64) -> Result<Index, String> {
             Record::MetadataIndex(found) => metadata.push(found),
             Record::ChunkIndex(chunk) => {
                 index.chunk(&chunk.compression);
+                if chunk.compression.is_empty() {
+                    unpacked.push(chunk.chunk_start_offset);
+                }
                 index.spans.push(chunk.into());
             }
             described => index.describe(described),
@@ -54,8 +58,22 @@ pub(super) fn read(file: &mut File, length: u64) -> Result<Index, String> {
         index.log_times = Some((statistics.message_start_time, statistics.message_end_time));
     }
     index.counts = statistics.channel_message_counts;
-    index.seal(&bytes);
+    let mut indexing = bytes;
+    for offset in unpacked {
+        indexing.extend(chunk_sum(file, offset)?);
+    }
+    index.seal(&indexing);
     Ok(index)
+}
+
+/// The checksum that a chunk says of itself. What is packed shows in its length; of two chunks that are not, an index has
+/// nothing that tells them apart.
+fn chunk_sum(file: &mut File, offset: u64) -> Result<[u8; 4], String> {
+    // Before it stand the first and last log time and the size.
+    let mut head = [0; HEAD + 3 * 8 + 4];
+    read_at(file, offset, &mut head)?;
+    let [.., a, b, c, d] = head;
+    Ok([a, b, c, d])
 }
 
 /// The bytes from the summary's first to the end of what its checksum covers.

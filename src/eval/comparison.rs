@@ -131,7 +131,7 @@ impl Comparison {
                 -mean, -high, -low
             ),
             Finding::Open => format!(
-                "`{better}` and `{worse}` cannot be told apart, {mean:+.2} dB [{low:+.2}, {high:+.2}] on {of}: does not hold{seeds}"
+                "`{better}` and `{worse}` cannot be told apart, {mean:+.2} dB [{low:+.2}, {high:+.2}] on {of}{seeds}"
             ),
             Finding::TooFew => format!(
                 "`{better}` less `{worse}` is {mean:+.2} dB on {of}: too few to tell, {FEW} or more are wanted{seeds}"
@@ -213,8 +213,8 @@ const CLAIMS: [[&str; 2]; 8] = [
 /// The names of the predictors that anybody could write.
 pub const TRIVIAL: [&str; 2] = ["last frame held", "mean frame"];
 
-/// Every side of a contest: rows of one group and setting together, then the trivial predictors. The same seed given
-/// twice counts once.
+/// Every side of a contest: rows of one group and setting together, then the trivial predictors. The same model or seed
+/// given twice counts once.
 pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
     let candidate = |place: usize| contest.candidate(&contest.subjects[place]);
     let mut groups: Vec<Vec<usize>> = Vec::new();
@@ -234,9 +234,9 @@ pub fn sides(contest: &Contest, all: &[EpisodeScores]) -> Vec<Side> {
         scores.map(|scores| Means::of(&scores.frames)).collect()
     };
     let side = |mut group: Vec<usize>| {
-        let seed = |place: &usize| candidate(*place).seed;
-        group.sort_by_key(seed);
-        group.dedup_by(|a, b| seed(a).is_some() && seed(a) == seed(b));
+        let own = |place: &usize| (candidate(*place).seed, candidate(*place).hash.as_str());
+        group.sort_by_key(own);
+        group.dedup_by(|a, b| own(a) == own(b) || (own(a).0.is_some() && own(a).0 == own(b).0));
         let first = group[0];
         Side {
             model: candidate(first).model().to_owned(),
@@ -301,6 +301,13 @@ pub fn comparisons(sides: &[Side]) -> Vec<Comparison> {
     }
     let compare = |(first, second)| compare(first, second);
     pairs.into_iter().filter_map(compare).collect()
+}
+
+/// Models of a single training, of which another seed may say otherwise.
+pub fn once(sides: &[Side]) -> Vec<String> {
+    let single = |side: &&Side| side.as_trained() && side.seeds.len() == 1;
+    let single = rows(sides).into_iter().filter(single);
+    single.map(Side::label).collect()
 }
 
 /// Claims of the paper whose models are there, but of no common recipe: where a budget in minutes gives one model more

@@ -5,6 +5,7 @@ use crate::measure::events::{contact_newtons, onsets};
 use crate::measure::fusion::{mean_share, position_shares, precision_shares};
 use crate::modality::Expert;
 use crate::model::config::Config;
+use crate::model::filter::factors;
 use crate::model::probe::Probe;
 use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace};
 use serde::Serialize;
@@ -32,9 +33,7 @@ pub(super) fn shares(
         let rows = experts.experts.iter().map(|expert| expert.row(belief).1);
         let log_vars: Vec<&[f32]> = rows.chain([beliefs.prior.row(belief).1]).collect();
         let mut alphas = alphas.row(belief).to_vec();
-        if let (false, Some(prior)) = (config.prior_expert, alphas.last_mut()) {
-            *prior = 0.0;
-        }
+        factors(&mut alphas, config.switches(), config.prior_expert);
         let shares = precision_shares(&alphas, &log_vars);
         let variance: Vec<f32> = beliefs
             .posterior
@@ -67,13 +66,20 @@ pub struct Aligned {
 
 /// Shares around the first contact of every episode, and the force that counts as one, in newtons: as the first model's
 /// training set has it, else as these episodes do.
+///
+/// The first belief of an episode is left out: its prior is the fixed N(0, 20 I), not the dynamics, and would pass for a
+/// prior that knows nothing before contact. So is an episode that starts in contact.
 pub fn aligned(contest: &Contest, all: &[EpisodeScores]) -> (f32, Vec<Aligned>) {
     let peak = |e: &EpisodeScores| e.force_newtons.iter().copied().fold(0.0, f32::max);
     let known = contest.candidates.iter().find_map(|c| c.contact_newtons);
     let threshold = known.unwrap_or_else(|| contact_newtons(all.iter().map(peak).collect()));
     let first: Vec<Option<usize>> = all
         .iter()
-        .map(|e| onsets(&e.force_newtons, threshold).first().copied())
+        .map(|e| {
+            let known = e.force_newtons.iter().find(|force| force.is_finite());
+            let onset = onsets(&e.force_newtons, threshold).first().copied();
+            onset.filter(|_| known.is_some_and(|&force| force <= threshold))
+        })
         .collect();
     let mut rows = Vec::new();
     for (place, subject) in contest.subjects.iter().enumerate() {
@@ -86,9 +92,9 @@ pub fn aligned(contest: &Contest, all: &[EpisodeScores]) -> (f32, Vec<Aligned>) 
                     .zip(&first)
                     .filter_map(|(episode, onset)| {
                         let step = i64::try_from((*onset)?).ok()? + offset;
-                        let belief = step - config.frame_stack as i64;
+                        let belief = usize::try_from(step - config.frame_stack as i64).ok()?;
                         let shares = episode.subjects.get(place)?.shares.as_ref()?;
-                        let share = shares.get(usize::try_from(belief).ok()?)?.get(i)?;
+                        let share = shares.get(belief).filter(|_| belief > 0)?.get(i)?;
                         Some(f64::from(*share)).filter(|share| share.is_finite())
                     })
                     .collect();
@@ -118,12 +124,17 @@ mod tests {
     use crate::eval::score::{Candidate, SubjectScores};
     use crate::eval::setting::Setting;
 
-    /// An episode of ten steps that is touched at `onset`, where vision has the share `touched`, and 0.2 elsewhere.
+    /// An episode of ten steps that is touched at `onset`, where vision has the share `touched`, and 0.2 elsewhere, but for
+    /// 1 at the first belief.
     fn touched_at(onset: usize, touched: f32) -> EpisodeScores {
         let mut force_newtons = vec![0.0; onset];
         force_newtons.resize(10, 5.0);
         // With one frame stacked, belief 0 is of step 1.
-        let share = |step: usize| if step == onset { touched } else { 0.2 };
+        let share = |step: usize| match step {
+            1 => 1.0,
+            _ if step == onset => touched,
+            _ => 0.2,
+        };
         let shares = (1..10).map(|step| vec![share(step), 1.0 - share(step)]);
         EpisodeScores {
             force_newtons,
@@ -142,6 +153,7 @@ mod tests {
             candidates: vec![Candidate {
                 label: "v".to_owned(),
                 recipe: String::new(),
+                hash: String::new(),
                 seed: None,
                 config,
                 contact_newtons: Some(1.0),
@@ -154,9 +166,13 @@ mod tests {
             }],
             protocol: Protocol::SYNTHETIC,
         };
-        let all: Vec<EpisodeScores> = (0..24)
+        let mut all: Vec<EpisodeScores> = (0..24)
             .map(|i| touched_at(3 + i % 3, if i % 2 == 0 { 0.5 } else { 0.7 }))
             .collect();
+        // What is touched from the start on, let go and touched again has had its first contact before.
+        let mut again = touched_at(5, 0.0);
+        again.force_newtons[0] = 5.0;
+        all.push(again);
         let (threshold, rows) = aligned(&contest, &all);
         assert!((threshold - 1.0).abs() < 1e-6);
         let vision = |offset: i64| {
@@ -169,8 +185,9 @@ mod tests {
         for other in [before, after] {
             assert!((other.share.mean - 0.2).abs() < 1e-6, "{other:?}");
         }
-        // Three steps before contact eight episodes have no belief yet, six after it all but eight have ended.
-        assert_eq!(vision(-3).map(|r| r.contacts), Some(16));
+        // Two steps before contact eight episodes have their first belief or none, six after it all but eight have ended.
+        assert_eq!(vision(-2).map(|r| r.contacts), Some(16));
+        assert!((vision(-2).unwrap().share.mean - 0.2).abs() < 1e-6);
         assert_eq!(vision(6), None);
         assert!(aligned(&contest, &all[..9]).1.is_empty());
     }

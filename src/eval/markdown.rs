@@ -162,6 +162,12 @@ fn comparisons(text: &mut String, summary: &Summary) {
             text,
             "- All of this is of one training a model: another seed may say otherwise."
         );
+    } else if !summary.once.is_empty() {
+        let _ = writeln!(
+            text,
+            "- Of one training alone, of which another seed may say otherwise: {}.",
+            summary.once.join(", ")
+        );
     }
     for [better, worse] in &summary.unasked {
         let _ = writeln!(
@@ -257,7 +263,7 @@ fn contact(text: &mut String, summary: &Summary) {
     }
     let offsets = [-2, -1, 0, 1, 2, 4, 6];
     let title = format!(
-        "Precision shares around contact (force over {:.1} N), in percent; bands and every step are in contact.csv",
+        "Precision shares around contact (force over {:.1} N), in percent (contacts); every step is in contact.csv",
         summary.contact_newtons
     );
     let mut columns = vec!["model: expert".to_owned()];
@@ -280,7 +286,7 @@ fn contact(text: &mut String, summary: &Summary) {
             at(o).map_or_else(String::new, |a| {
                 let [mean, low, high] =
                     [a.share.mean, a.share.low, a.share.high].map(|s| 100.0 * s);
-                format!("{mean:.0} [{low:.0}, {high:.0}]")
+                format!("{mean:.0} [{low:.0}, {high:.0}] ({})", a.contacts)
             })
         }));
         row(text, &cells);

@@ -22,6 +22,8 @@ pub struct Candidate {
     pub label: String,
     /// What tells its recipe from the others'; empty where all have the same.
     pub recipe: String,
+    /// Names what its files hold.
+    pub hash: String,
     /// The seed of its training; none where its report does not say.
     pub seed: Option<u64>,
     /// Its experts and sizes.

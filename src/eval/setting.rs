@@ -77,8 +77,11 @@ impl Setting {
         alphas
     }
 
-    /// Whether a belief would be left without any expert.
-    pub fn empties(&self, config: &Config, beliefs: usize) -> bool {
+    /// Whether a belief would be left without any expert, in an episode that is long enough.
+    pub fn empties(&self, config: &Config) -> bool {
+        // Behind the last change all beliefs are alike.
+        let changes = self.tempered.iter().map(|t| t.until.unwrap_or(t.from));
+        let beliefs = changes.max().unwrap_or(0) + 1;
         let alphas = self.alphas(config, beliefs);
         // Without the prior as an expert a belief of no sensor is the prior all the same.
         config.prior_expert && (0..beliefs).any(|i| alphas.row(i).iter().all(|&a| a == 0.0))
@@ -118,15 +121,15 @@ mod tests {
         assert_eq!(alphas.row(0), [1.0, 1.0, 0.0]);
         assert_eq!(alphas.row(1), [0.5, 1.0, 0.0]);
         assert_eq!(alphas.row(2), [1.0, 1.0, 0.0]);
-        assert!(!setting.empties(&model("vhp"), 3));
+        assert!(!setting.empties(&model("vhp")));
         for expert in [Expert::Vision, Expert::Joint] {
             setting.tempered.push(Tempered {
                 expert,
-                from: 3,
+                from: 30,
                 until: None,
                 alpha: 0.0,
             });
         }
-        assert!(setting.empties(&model("vhp"), 3) && !setting.empties(&model("vhp"), 2));
+        assert!(setting.empties(&model("vhp")) && !setting.empties(&model("v-h-p")));
     }
 }

@@ -3,7 +3,7 @@
 use candle_core::Result;
 use serde::Serialize;
 
-use super::comparison::{Comparison, Means, Side, TRIVIAL, comparisons, sides, unasked};
+use super::comparison::{Comparison, Means, Side, TRIVIAL, comparisons, once, sides, unasked};
 use super::contact::{self, Aligned};
 use super::protocol::Protocol;
 use super::regression::{self, PoseErrors};
@@ -82,6 +82,8 @@ pub struct Summary {
     pub quality: Vec<Quality>,
     /// Groups of more than one seed.
     pub seeds: Vec<Seeds>,
+    /// Models of a single training.
+    pub once: Vec<String>,
     /// Who is better.
     pub comparisons: Vec<Comparison>,
     /// Claims of the paper that were not asked: `[better, worse]` are there, but of no common recipe.
@@ -131,6 +133,7 @@ pub fn summarise(
         episodes: all.len(),
         quality,
         seeds: sides.iter().filter_map(over_seeds).collect(),
+        once: once(&sides),
         comparisons: comparisons(&sides),
         unasked: unasked(&sides),
         regression: regression::errors(contest, all)?,

@@ -233,23 +233,32 @@ fn one_image_is_no_episode() {
 }
 
 #[test]
-fn a_sensor_that_stops_early_has_a_gap() {
+fn a_stream_that_stops_early_has_a_gap() {
     let images = stamps(BASE, &[100_000_000; 5]);
-    let short = stamps(BASE, &[10_000_000; 30]);
-    let recording = Recording {
+    let until = |samples: usize| stamps(BASE, &vec![10_000_000; samples]);
+    let mut recording = Recording {
         frames: images.iter().map(|_| frame()).collect(),
         frame_stamps_nanos: images,
-        wrench: track(&short, |_| [0.0; 6]),
-        control: track(&short, |_| [0.0; 2]),
+        wrench: track(&until(30), |_| [0.0; 6]),
+        control: track(&until(30), |_| [0.0; 2]),
         ..Recording::default()
     };
-    let flags = align(&recording, LAYOUT).unwrap().flags;
-    assert_eq!(flags.len(), 1, "{flags:?}");
-    assert_eq!(flags[0].stamp_nanos, BASE + 300_000_000);
+    let flags = |recording: &Recording| align(recording, LAYOUT).unwrap().flags;
+    let said = flags(&recording);
+    let said: Vec<_> = said
+        .iter()
+        .map(|f| (f.topic.as_str(), f.stamp_nanos))
+        .collect();
+    let at = BASE + 300_000_000;
+    assert_eq!(said, [("/wrench", at), ("/control", at)]);
+    // No command counts after the last image but one; the wrench at the last one does.
+    recording.wrench = track(&until(50), |_| [0.0; 6]);
+    recording.control = track(&until(40), |_| [0.0; 2]);
+    assert_eq!(flags(&recording), []);
 }
 
 #[test]
-fn a_sensor_that_starts_late_or_speaks_once_is_flagged() {
+fn a_stream_that_starts_late_or_speaks_once_is_flagged() {
     let images = stamps(BASE, &[100_000_000; 5]);
     let late = stamps(BASE + 250_000_000, &[10_000_000; 25]);
     let recording = Recording {
@@ -257,18 +266,21 @@ fn a_sensor_that_starts_late_or_speaks_once_is_flagged() {
         frame_stamps_nanos: images,
         wrench: track(&late, |_| [0.0; 6]),
         ee_position: track(&[BASE], |_| [0.0; 3]),
+        control: track(&late, |_| [0.0; 2]),
         ..Recording::default()
     };
     let flags = align(&recording, LAYOUT).unwrap().flags;
     let said: Vec<_> = flags
         .iter()
-        .map(|flag| (flag.stamp_nanos, flag.what.as_str()))
+        .map(|flag| (flag.topic.as_str(), flag.stamp_nanos, flag.what.as_str()))
         .collect();
+    let gap = (BASE + 100_000_000, "gap of 160.000 ms");
     assert_eq!(
         said,
         [
-            (BASE + 100_000_000, "gap of 160.000 ms"),
-            (BASE, "a single sample")
+            ("/wrench", gap.0, gap.1),
+            ("/ee/pose", BASE, "a single sample"),
+            ("/control", gap.0, gap.1),
         ]
     );
 }

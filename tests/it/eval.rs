@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
 
 mod fairness;
+mod panels;
 mod scores;
 mod sensors;
 
@@ -278,10 +279,10 @@ fn tables_say_the_same_in_every_format() {
     assert!((row[5].parse::<f64>().unwrap() - rmse).abs() < 1e-9);
     // Around contact the experts' shares of a belief add up to one.
     let contact = csv(&out, "contact");
-    let at_onset = contact
+    let after = contact
         .iter()
-        .filter(|row| row[0] == "v-h-p" && row[2] == "0");
-    let shares: Vec<f64> = at_onset.map(|row| row[4].parse().unwrap()).collect();
+        .filter(|row| row[0] == "v-h-p" && row[2] == "1");
+    let shares: Vec<f64> = after.map(|row| row[4].parse().unwrap()).collect();
     assert_eq!(shares.len(), 4, "{contact:?}");
     assert!((shares.iter().sum::<f64>() - 1.0).abs() < 1e-5);
     // Shapley values add up to what all sensors save over none, episode by episode.
@@ -330,8 +331,27 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
             "{model}: {own:?} {damaged:?}"
         );
     }
+    // A row is named by what counts, once.
+    let pasted = "v=1;episode=x;step=3;alpha=haptic:0@1-;context=2";
+    let states = ["--json", "--state", pasted, "--state", "alpha=haptic:0"];
+    let report: Value = serde_json::from_str(&answer(&mut bench.eval(&states))).unwrap();
+    let rows = report["quality"].as_array().unwrap().iter();
+    let switched = rows.filter(|row| row["subject"] == "v-h-p (alpha=haptic:0)");
+    assert_eq!(switched.count(), 1);
     for (state, what) in [
         ("alpha=haptic:2000", "is not like vision:0"),
+        (
+            "alpha=haptic:0;damage=vision:noise:1",
+            "damage: no such key",
+        ),
+        (
+            "alpha=haptic:0;controls=from:2,mirror",
+            "controls: a prediction from other",
+        ),
+        (
+            "alpha=vision:0@12-,joint:0@12-,prior:0@12-",
+            "leaves no expert of model `vhp` on",
+        ),
         ("episode=x", "switches and damages nothing"),
         ("alpha=concat:0", "no model has these experts"),
         (

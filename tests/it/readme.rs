@@ -1,7 +1,10 @@
-//! The README says what the program does.
+//! README and docs say what the program does.
 
+use poescope::data::{Role, Topics};
+use poescope::measure::corruption::Damage;
 use poescope::model::config::{Config, Preset};
 use poescope::session::keymap;
+use poescope::session::state::State;
 
 fn readme() -> String {
     std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/README.md")).unwrap()
@@ -58,5 +61,42 @@ fn every_key_of_the_config_is_documented_with_its_values() {
             text.contains(&row),
             "docs/training.md has no row that begins {row}"
         );
+    }
+}
+
+fn docs(name: &str) -> String {
+    let path = format!("{}/docs/{name}", env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[test]
+fn every_role_is_documented_with_its_topic() {
+    let (data, topics) = (docs("data.md"), Topics::default());
+    for role in Role::ALL {
+        let row = format!("| `{}` | `{}` |", role.name(), topics.topic(role));
+        assert!(data.contains(&row), "{row}");
+    }
+}
+
+#[test]
+fn every_key_of_the_state_string_is_documented() {
+    let docs = docs("state.md");
+    let example = docs.lines().find(|line| line.starts_with("v=1;")).unwrap();
+    let (state, complaints) = State::parse(example);
+    assert_eq!((complaints, state.unknown), (vec![], vec![]));
+    let rows = docs.lines().filter_map(|line| line.strip_prefix("| `"));
+    let names: Vec<&str> = rows
+        .filter_map(|row| Some(row.split_once(" |")?.0))
+        .flat_map(|names| names.split(", ").map(|name| name.trim_matches('`')))
+        .collect();
+    let damage = Damage::ALL.map(Damage::name);
+    assert!(damage.iter().all(|name| names.contains(name)));
+    // A key that is known has something to say of a value that is none, or takes it.
+    for key in names.iter().filter(|name| !damage.contains(name)) {
+        let (state, _) = State::parse(&format!("v=1;{key}=x"));
+        assert_eq!(state.unknown, [], "{key}");
+    }
+    for known in ["samples", "select", "rank", "controls", "loop", "compare"] {
+        assert!(names.contains(&known), "{known}");
     }
 }

@@ -93,6 +93,7 @@ pub fn candidates(entrants: &[Entrant]) -> Vec<Candidate> {
     let candidate = |about: &About| Candidate {
         label: String::new(),
         recipe: String::new(),
+        hash: about.hash.clone(),
         seed: about.training.seed,
         config: about.config.clone(),
         contact_newtons: about.training.contact_newtons,
@@ -147,7 +148,7 @@ fn checkpoint(folder: &Path) -> anyhow::Result<Entrant> {
             folder: name,
             hash,
             mean_frame: format!("{:08x}", crc32fast::hash(&bytes)),
-            training: Training::of(folder),
+            training: Training::of(folder)?,
             curve: curve(folder),
             regressors: regressors(&folder.join(PROBE), config.latent)?,
             config,

@@ -10,9 +10,9 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use super::entrants::Entrant;
-use super::ground::odd;
+use super::ground::{odd, unsuited};
 use crate::data::{Dataset, Role};
-use crate::episode::{EpisodeSource, Split};
+use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::regression;
 use crate::eval::score::{Candidate, Scorer};
@@ -84,7 +84,8 @@ impl Fit<'_> {
             let episode = dataset
                 .load(index, layout)
                 .map_err(|error| error.to_string());
-            let sound = episode.and_then(|episode| odd(&episode).map_or(Ok(episode), Err));
+            let fault = |e: &Episode| odd(e).or_else(|| unsuited(&model.config, e));
+            let sound = episode.and_then(|episode| fault(&episode).map_or(Ok(episode), Err));
             if let Err(why) = &sound {
                 bar.suspend(|| eprintln!("left out of the fit: {why}"));
             }

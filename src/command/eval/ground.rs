@@ -1,7 +1,6 @@
 //! What models are scored on.
 
 use std::collections::HashSet;
-use std::path::PathBuf;
 
 use anyhow::{Context, bail};
 
@@ -13,12 +12,13 @@ use crate::data::Dataset;
 use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::score::{Candidate, Contest, score};
 use crate::eval::summary::Scope;
+use crate::model::config::Config;
 use crate::model::observation::{self, suits};
 
 /// What models are scored on: some episodes of a dataset.
 pub struct Ground {
-    /// The dataset and its path; none where scores alone were named, which say themselves what they are of.
-    dataset: Option<(PathBuf, Dataset)>,
+    /// The dataset; none where scores alone were named, which say themselves what they are of.
+    dataset: Option<Dataset>,
     /// What to call it.
     pub scope: Scope,
     /// The episodes' places in the dataset.
@@ -58,7 +58,7 @@ impl Ground {
             left_out: Vec::new(),
         };
         Ok(Self {
-            dataset: Some((path, dataset)),
+            dataset: Some(dataset),
             scope,
             episodes,
         })
@@ -66,7 +66,7 @@ impl Ground {
 
     /// The dataset, where it is at hand.
     pub fn dataset(&self) -> Option<&Dataset> {
-        self.dataset.as_ref().map(|(_, dataset)| dataset)
+        self.dataset.as_ref()
     }
 
     /// Where the episodes come from, as [`Dataset::origin`] has it.
@@ -83,7 +83,7 @@ impl Ground {
         candidates: &[usize],
         index: usize,
     ) -> anyhow::Result<Vec<Outcome>> {
-        let Some((path, dataset)) = &self.dataset else {
+        let Some(dataset) = &self.dataset else {
             bail!("no dataset to score on; name it by --data");
         };
         let left_out = |why: String| vec![Outcome::LeftOut(why); candidates.len()];
@@ -96,26 +96,17 @@ impl Ground {
             return Ok(left_out(why));
         }
         let id = &episode.meta.id;
-        let of = |candidate: &usize| &contest.candidates[*candidate];
-        for Candidate { label, config, .. } in candidates.iter().map(of) {
-            let missing = observation::missing(config, &episode);
-            if !missing.is_empty() {
-                bail!(
-                    "{}: episode `{id}` lacks {}, which model `{label}` sees",
-                    path.display(),
-                    missing.join(", ")
-                );
-            }
-            suits(config, &episode).with_context(|| path.display().to_string())?;
-        }
         let (steps, images) = (episode.steps(), contest.protocol.images());
-        if steps < images {
-            return Ok(left_out(format!(
-                "episode `{id}` has {steps} images of {images}; choose a smaller --horizon"
-            )));
-        }
         let by = |&candidate: &usize| {
-            let Candidate { label, config, .. } = of(&candidate);
+            let Candidate { label, config, .. } = &contest.candidates[candidate];
+            if let Some(why) = unsuited(config, &episode) {
+                return Ok(Outcome::LeftOut(format!("model `{label}`: {why}")));
+            }
+            if steps < images {
+                return Ok(Outcome::LeftOut(format!(
+                    "episode `{id}` has {steps} images of {images}; choose a smaller --horizon"
+                )));
+            }
             let scorer = entrants[candidate].scorer().context("no weights")?;
             let settings = contest.settings(candidate);
             let scores = score(scorer, &settings, contest.protocol, &episode)
@@ -155,6 +146,18 @@ fn wanted(
         own.map(|(index, _)| index).collect()
     };
     let wanted = of_split(&first);
+    let cut = split != Split::Test && !dataset.metas().iter().any(|m| m.split == Some(Split::Val));
+    for entrant in cutters
+        .iter()
+        .filter(|e| cut && e.about.training.seed.is_none())
+    {
+        eprintln!(
+            "note: {} does not say by which seed it was trained; if that was on {}, episodes of this `{}` were trained on",
+            entrant.path.display(),
+            dataset.name(),
+            split.name()
+        );
+    }
     for entrant in cutters.into_iter().skip(1) {
         if of_split(&splits(entrant)) != wanted {
             bail!(
@@ -167,6 +170,16 @@ fn wanted(
         }
     }
     Ok((split, wanted))
+}
+
+/// Why a model can make nothing of an episode: it lacks a sensor, or was measured in other units.
+pub fn unsuited(config: &Config, episode: &Episode) -> Option<String> {
+    let missing = observation::missing(config, episode);
+    if missing.is_empty() {
+        return suits(config, episode).err().map(|error| error.to_string());
+    }
+    let id = &episode.meta.id;
+    Some(format!("episode `{id}` lacks {}", missing.join(", ")))
 }
 
 /// Why an episode says nothing about a model: what was odd when it was recorded, as training has it.

@@ -1,5 +1,6 @@
 //! The score files of one model in a folder: read whole, and one of them gone on with.
 
+use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -12,6 +13,8 @@ use super::scores::{Head, Line, Outcome, Outcomes, Scores};
 #[derive(Default)]
 pub struct Kept {
     outcomes: Outcomes,
+    /// Episodes that were left out and are looked at again: their recording may have been mended since.
+    again: BTreeSet<usize>,
     sink: Option<Sink>,
 }
 
@@ -20,13 +23,18 @@ impl Kept {
     pub fn fixed(outcomes: Outcomes) -> Self {
         Self {
             outcomes,
-            sink: None,
+            ..Self::default()
         }
     }
 
     /// Reads every score file of this model in `folder` and goes on with the shard's own, or with the whole run's, which
-    /// takes in what shards have left.
-    pub fn open(folder: &Path, head: &Head, shard: Option<(usize, usize)>) -> anyhow::Result<Self> {
+    /// takes in what shards have left. What was left out is looked at again, unless all is only summed up (`merge`).
+    pub fn open(
+        folder: &Path,
+        head: &Head,
+        shard: Option<(usize, usize)>,
+        merge: bool,
+    ) -> anyhow::Result<Self> {
         let stem = format!("{}-{}", head.model.folder, head.model.hash);
         let path = folder.join(match shard {
             Some((i, n)) => format!("{stem}-{i}-of-{n}.jsonl"),
@@ -66,7 +74,10 @@ impl Kept {
         if shard.is_none() && (!as_is || outcomes.len() > known) {
             sink.rewrite(&outcomes)?;
         }
+        let left_out = outcomes.iter().filter(|(_, o)| o.left_out().is_some());
+        let again = left_out.map(|(&index, _)| index).filter(|_| !merge);
         Ok(Self {
+            again: again.collect(),
             outcomes,
             sink: Some(sink),
         })
@@ -74,7 +85,7 @@ impl Kept {
 
     /// Whether an episode is done with.
     pub fn has(&self, index: usize) -> bool {
-        self.outcomes.contains_key(&index)
+        self.outcomes.contains_key(&index) && !self.again.contains(&index)
     }
 
     /// Takes out what came of an episode.
@@ -84,7 +95,10 @@ impl Kept {
 
     /// Adds what came of an episode.
     pub fn push(&mut self, index: usize, outcome: Outcome) -> anyhow::Result<()> {
-        if let Some(sink) = &mut self.sink {
+        self.again.remove(&index);
+        let before = self.outcomes.get(&index).and_then(Outcome::left_out);
+        let said = before.is_some() && before == outcome.left_out();
+        if let (false, Some(sink)) = (said, &mut self.sink) {
             sink.push(&line(index, &outcome)?)?;
         }
         self.outcomes.insert(index, outcome);

@@ -23,6 +23,17 @@ pub struct Ledger {
     of: Vec<usize>,
 }
 
+/// Where scores are kept.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// The folder of the tables; none to keep nothing.
+    pub out: Option<&'a Path>,
+    /// Which part of the episodes is scored, of how many.
+    pub shard: Option<(usize, usize)>,
+    /// Whether what is there is only summed up.
+    pub merge: bool,
+}
+
 /// Scores of every row, and their episodes' places in the dataset.
 #[derive(Default)]
 pub struct Joined {
@@ -37,8 +48,7 @@ pub struct Joined {
 impl Ledger {
     /// Takes up what lies in the folder of the tables, and what was named itself.
     pub fn open(
-        out: Option<&Path>,
-        shard: Option<(usize, usize)>,
+        place: Place<'_>,
         ground: &Ground,
         contest: &Contest,
         entrants: &mut [Entrant],
@@ -67,12 +77,14 @@ impl Ledger {
                 settings: contest.settings(candidate),
                 model: entrant.about.clone(),
             };
-            models.push(match (&mut entrant.source, out) {
+            models.push(match (&mut entrant.source, place.out) {
                 (Source::Scores(scores), _) => {
                     let named = || entrant.path.display().to_string();
                     Kept::fixed(picked(scores, &head).with_context(named)?)
                 }
-                (Source::Weights(_), Some(out)) => Kept::open(&out.join(SCORES), &head, shard)?,
+                (Source::Weights(_), Some(out)) => {
+                    Kept::open(&out.join(SCORES), &head, place.shard, place.merge)?
+                }
                 (Source::Weights(_), None) => Kept::default(),
             });
         }

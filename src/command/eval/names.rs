@@ -157,6 +157,7 @@ mod tests {
                 recipe: String::new(),
                 seed: Some(i as u64),
                 config,
+                hash: String::new(),
                 contact_newtons: None,
                 regressors: None,
             });

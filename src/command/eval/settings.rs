@@ -2,21 +2,20 @@
 
 use anyhow::{Context, anyhow, bail};
 
-use crate::eval::protocol::Protocol;
 use crate::eval::score::{Candidate, Subject};
 use crate::eval::setting::{Setting, Tempered};
 use crate::modality::Expert;
+use crate::session::settings::Sampling;
 use crate::session::state::State;
 
 /// Every row.
-pub fn subjects(
-    candidates: &[Candidate],
-    states: &[String],
-    protocol: Protocol,
-) -> anyhow::Result<Vec<Subject>> {
+pub fn subjects(candidates: &[Candidate], states: &[String]) -> anyhow::Result<Vec<Subject>> {
     let mut settings = vec![Setting::default(), Setting::prior_off()];
     for text in states {
-        settings.push(read(text).with_context(|| format!("--state {text}"))?);
+        let setting = read(text).with_context(|| format!("--state {text}"))?;
+        if !settings.contains(&setting) {
+            settings.push(setting);
+        }
     }
     let mut subjects = Vec::new();
     for setting in &settings {
@@ -26,7 +25,7 @@ pub fn subjects(
             if !setting.applies_to(config) {
                 continue;
             }
-            if setting.empties(config, protocol.images() - config.frame_stack) {
+            if setting.empties(config) {
                 bail!(
                     "{}: leaves no expert of model `{}` on",
                     setting.name,
@@ -50,7 +49,7 @@ pub fn subjects(
     Ok(subjects)
 }
 
-/// Switches and damage of a state string; what else it says does not count here.
+/// Switches and damage of a state string, and named by them: where it looks and what it compares does not count here.
 fn read(text: &str) -> anyhow::Result<Setting> {
     let versioned = if text.split(';').any(|part| part.trim().starts_with("v=")) {
         text.to_owned()
@@ -60,6 +59,12 @@ fn read(text: &str) -> anyhow::Result<Setting> {
     let (state, complaints) = State::parse(&versioned);
     if !complaints.is_empty() {
         return Err(anyhow!(complaints.join("; ")));
+    }
+    if let Some((key, _)) = state.unknown.first() {
+        bail!("{key}: no such key; write alpha=haptic:0 or corrupt=vision:noise:0.5");
+    }
+    if state.controls.is_some() {
+        bail!("controls: a prediction from other controls has no truth to be scored by");
     }
     let tempered: Vec<Tempered> = Expert::ALL
         .into_iter()
@@ -73,8 +78,21 @@ fn read(text: &str) -> anyhow::Result<Setting> {
             })
         })
         .collect();
+    let counted = State {
+        switches: state.switches,
+        corruptions: state.corruptions.clone(),
+        sampling: Sampling {
+            seed: state.sampling.seed,
+            ..Sampling::default()
+        },
+        ..State::default()
+    };
+    let counted = counted.to_string();
     let setting = Setting {
-        name: text.trim().to_owned(),
+        name: counted
+            .split_once(';')
+            .map_or("", |(_, name)| name)
+            .to_owned(),
         tempered,
         damaged: state.corruptions.into_iter().collect(),
     };

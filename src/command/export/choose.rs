@@ -17,10 +17,10 @@ pub(super) fn episodes(
     session: &Session,
     args: &ExportArgs,
     state: Option<&State>,
-    seed: impl FnOnce() -> u64,
+    seed: impl FnOnce() -> anyhow::Result<u64>,
 ) -> anyhow::Result<Vec<usize>> {
     if let Some(split) = args.split {
-        let splits = dataset.splits(seed()).into_iter().enumerate();
+        let splits = dataset.splits(seed()?).into_iter().enumerate();
         let found: Vec<usize> = splits
             .filter_map(|(index, of)| (of == split).then_some(index))
             .collect();

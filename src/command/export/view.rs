@@ -50,7 +50,7 @@ pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
         }
     }
     if !args.episode.is_empty() {
-        let episodes = super::choose::episodes(&dataset, &app.session, args, None, || 0)?;
+        let episodes = super::choose::episodes(&dataset, &app.session, args, None, || Ok(0))?;
         app.session.apply(Command::SelectEpisode(episodes[0]));
     }
     for key in &keys {

@@ -8,9 +8,9 @@ const GAP_PERIODS: i64 = 3;
 const ROUNDING_NANOS: i64 = 1000;
 
 /// Appends what is odd about `stamps` (in the order of recording) to `flags`. The nominal period is the median one; a
-/// stream that begins so long after, or ends so long before the steps it should cover has a gap there, too, and a single
-/// sample covers nothing.
-pub(super) fn find(topic: &str, stamps: &[i64], cover: Option<(i64, i64)>, flags: &mut Vec<Flag>) {
+/// stream that begins so long after, or ends so long before what it should `cover` (first and last stamp) has a gap
+/// there, too, and a single sample covers nothing.
+pub(super) fn find(topic: &str, stamps: &[i64], cover: (i64, i64), flags: &mut Vec<Flag>) {
     let mut flag = |stamp_nanos: i64, what: String| {
         flags.push(Flag {
             topic: topic.to_owned(),
@@ -33,19 +33,17 @@ pub(super) fn find(topic: &str, stamps: &[i64], cover: Option<(i64, i64)>, flags
     let mut lengths: Vec<_> = sorted.windows(2).map(periods).collect();
     lengths.sort_unstable();
     let Some(&nominal) = lengths.get(lengths.len().saturating_sub(1) / 2) else {
-        if let (Some(_), [only]) = (cover, stamps) {
+        if let [only] = stamps {
             flag(*only, "a single sample".to_owned());
         }
         return;
     };
-    if let (Some((from, until)), Some(&first), Some(&last)) = (cover, sorted.first(), sorted.last())
-    {
-        if from < first {
-            sorted.insert(0, from);
-        }
-        if until > last {
-            sorted.push(until);
-        }
+    let (from, until) = cover;
+    if sorted.first().is_some_and(|&first| from < first) {
+        sorted.insert(0, from);
+    }
+    if sorted.last().is_some_and(|&last| until > last) {
+        sorted.push(until);
     }
     let limit = nominal
         .saturating_mul(GAP_PERIODS)

@@ -7,6 +7,7 @@ use ::rerun::{AnyValues, ComponentIdentifier, RecordingStreamResult, TextDocumen
 
 use super::log::Log;
 use super::{Shown, each, recorded, space};
+use crate::episode::PLATE_M;
 use crate::export::Run;
 use crate::export::step::{READINGS, readings_of};
 
@@ -61,7 +62,10 @@ fn text(run: &Run) -> String {
     row(
         &mut text,
         &format!("{root}/plate, {root}/tip, {root}/path"),
-        "as recorded, m; a plate is drawn 9 cm square whatever was pushed",
+        &format!(
+            "as recorded, m; a plate is drawn {:.0} cm square whatever was pushed",
+            100.0 * PLATE_M[0]
+        ),
     );
     for model in each(run) {
         of_model(&mut text, &model);

@@ -2,9 +2,13 @@
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
+use poescope::episode::Track;
+use poescope::model::config::Config;
 use serde_json::{Value, json};
 
+use super::complaint;
 use crate::common::{answer, poescope, simulated, three_experts, untrained};
 use crate::data::{recordings, write};
 
@@ -94,24 +98,74 @@ fn models_that_cut_their_own_validation_split_are_not_scored_together_on_it() {
 fn odd_recordings_are_left_out_and_counted() {
     let folder = tempfile::tempdir().unwrap();
     let options = ["--steps", "9", "--split", "test"];
-    let data = simulated(folder.path().join("test.mcap"), 3, &options);
+    let data = simulated(folder.path().join("test.mcap"), 4, &options);
     let mut recordings = recordings(&data);
     recordings[1].control.values[3][0] = f64::NAN;
+    // Without touch, and with a hit that no training has seen.
+    recordings[2].wrench = Track::default();
+    recordings[3].wrench.values[40][2] = 1e6;
     let damaged = folder.path().join("damaged.mcap");
     write(&damaged, &recordings);
-    let model = untrained(folder.path().join("model"), three_experts());
-    let mut eval = poescope();
-    eval.args(["eval", "--horizon", "3"])
-        .arg("--data")
-        .arg(&damaged);
-    let output = eval.arg("--model").arg(&model).output().unwrap();
-    let [out, err] = [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap());
+    let v = untrained(folder.path().join("v"), Config::named("v").unwrap());
+    let mut v_h_p = three_experts();
+    let channels = &mut v_h_p.haptic;
+    (channels.mean, channels.scale) = (vec![0.0; 6], vec![1.0; 6]);
+    let v_h_p = untrained(folder.path().join("v-h-p"), v_h_p);
+    let eval = |models: &[&Path]| {
+        let mut eval = poescope();
+        eval.args(["eval", "--horizon", "3"])
+            .arg("--data")
+            .arg(&damaged);
+        eval.args(
+            models
+                .iter()
+                .flat_map(|model| [Path::new("--model"), model]),
+        );
+        let output = eval.output().unwrap();
+        [output.stdout, output.stderr].map(|said| String::from_utf8(said).unwrap())
+    };
+    let [out, err] = eval(&[&v, &v_h_p]);
     assert!(
-        out.starts_with("2 episodes of split `test` (1 left out)"),
+        out.starts_with("1 episodes of split `test` (3 left out)"),
         "{out}{err}"
     );
+    for why in [
+        "left out: episode `ep00001`: /control: a value that is not a finite number",
+        "left out: model `v-h-p`: episode `ep00002` lacks haptic",
+        "left out: model `v-h-p`: channel `fz` of episode `ep00003`",
+    ] {
+        assert!(err.contains(why), "{why}: {err}");
+    }
+    // What sees no force loses nothing by it.
+    let [out, _] = eval(&[&v]);
     assert!(
-        err.contains("left out: episode `") && err.contains("not a finite number"),
-        "{err}"
+        out.starts_with("3 episodes of split `test` (1 left out)"),
+        "{out}"
+    );
+}
+
+#[test]
+fn whose_seed_is_not_known_is_no_guess() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = ["--steps", "9", "--split", "train"];
+    let data = simulated(folder.path().join("all.mcap"), 20, &options);
+    let model = untrained(folder.path().join("model"), three_experts());
+    let mut eval = poescope();
+    eval.args(["eval", "--horizon", "5"])
+        .arg("--data")
+        .arg(&data)
+        .arg("--model")
+        .arg(&model);
+    let said = |eval: &mut Command| String::from_utf8(eval.output().unwrap().stderr).unwrap();
+    let note = said(&mut eval);
+    assert!(note.contains("does not say by which seed"), "{note}");
+    trained(&model, "1", None);
+    assert_eq!(said(&mut eval), "");
+    // Half a report is none to go by.
+    fs::write(model.join("report.json"), "{\"seed\": 1").unwrap();
+    let refusal = complaint(&mut eval);
+    assert!(
+        refusal.contains("report.json: not the report of a training"),
+        "{refusal}"
     );
 }
