@@ -44,6 +44,11 @@ fn say(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// A line for the user beside what a command prints. Nobody may be listening any more: Ctrl-C ends `| tee log` first.
+fn note(text: &str) {
+    let _ = writeln!(io::stderr().lock(), "{text}");
+}
+
 /// Ctrl-C and SIGTERM ask for a stop; the second one ends the process at once.
 fn stop_on_signals() -> anyhow::Result<Arc<AtomicBool>> {
     let stop = Arc::new(AtomicBool::new(false));

@@ -30,7 +30,7 @@ use self::schedule::Phase;
 use self::state::State;
 use self::step::Losses;
 use self::tensorboard::EventWriter;
-use self::validate::Validation;
+use self::validate::{AFTER_EPOCH, Validation};
 use crate::data::{DataError, Episodes};
 use crate::episode::Episode;
 use crate::model::Model;
@@ -52,12 +52,8 @@ pub enum TrainError {
     /// An episode could not be had again.
     #[error(transparent)]
     Data(#[from] DataError),
-    /// A loss, a gradient or a weight was no number. The run folder keeps the last checkpoint from before it.
-    #[error(
-        "update {update}: {what} is not finite{}; a checkpoint in the run folder is from before it: leave out the odd \
-         episode, or lower `training.learning_rate` in its config.toml, and go on with --resume",
-        among(episodes)
-    )]
+    /// A loss, a gradient or a weight was no number. The run folder keeps the last checkpoint from before it, if any.
+    #[error("update {update}: {what} is not finite{}; {}", among(episodes), remedy(*kept))]
     NotFinite {
         /// Which update.
         update: u64,
@@ -65,6 +61,8 @@ pub enum TrainError {
         what: String,
         /// The episodes of its batch.
         episodes: Vec<String>,
+        /// Whether there is a checkpoint from before it.
+        kept: bool,
     },
     /// The thread that prepares batches could not be started, or has died.
     #[error("preparing batches: {0}")]
@@ -76,6 +74,15 @@ fn among(episodes: &[String]) -> String {
         return String::new();
     }
     format!(" (episodes {})", episodes.join(", "))
+}
+
+fn remedy(kept: bool) -> &'static str {
+    if kept {
+        "a checkpoint in the run folder is from before it: leave out the odd episode, or lower `training.learning_rate` in \
+         its config.toml, and go on with --resume"
+    } else {
+        "nothing is saved yet: leave out the odd episode, or lower `training.learning_rate` or the weights of the loss"
+    }
 }
 
 impl From<candle_core::Error> for TrainError {
@@ -112,7 +119,9 @@ pub struct Progress {
     pub elapsed: Duration,
     /// Running means of the losses.
     pub losses: Losses,
-    /// Of the epoch that just ended.
+    /// Whether an epoch has just ended.
+    pub epoch_ended: bool,
+    /// Of that epoch; none where there is nothing to validate on.
     pub validation: Option<Validation>,
 }
 
@@ -177,13 +186,16 @@ fn drive(
     let budget = state.origin.budget;
     let epoch_updates = epoch_updates(model, run);
     let mut ordered = state.update;
-    let mut running: Option<Losses> = None;
     let mut meter = Meter::default();
     let mut saved: Option<Instant> = None;
     let mut events = EventWriter::append(run.folder, state.update + 1)?;
     loop {
         let fraction = budget.fraction(state.update, epoch_updates, state.elapsed);
         if fraction >= 1.0 || run.stop.load(Ordering::Relaxed) {
+            if saved.is_some() && !state.update.is_multiple_of(epoch_updates) {
+                // Nobody has seen yet what the last update has made of the weights.
+                looked_at(model, state, run, Vec::new())?;
+            }
             state.save(model, run.folder)?;
             return Ok(if fraction >= 1.0 {
                 Outcome::Finished
@@ -221,6 +233,7 @@ fn drive(
                 update: state.update,
                 what,
                 episodes,
+                kept: state.update > 0,
             });
         }
         // These weights have just shown that they are good, which nobody knows of those after the update. The first
@@ -235,24 +248,18 @@ fn drive(
         meter.add(&gradients, stepping, waited);
         state.update += 1;
         state.average(model)?;
-        let losses = running.map_or(gradients.losses, |running| {
+        let losses = state.losses.map_or(gradients.losses, |running| {
             running.towards(gradients.losses, 0.05)
         });
-        running = Some(losses);
-        let mut validation = None;
-        if state.update.is_multiple_of(epoch_updates) {
-            let scores = validate::validate(state.kept(model), run.val)?;
-            if !scores.losses.is_finite() {
-                return Err(TrainError::NotFinite {
-                    update: state.update - 1,
-                    what: "the validation loss after it".to_owned(),
-                    episodes,
-                });
-            }
-            validation = Some(scores);
-        }
+        state.losses = Some(losses);
+        let epoch_ended = state.update.is_multiple_of(epoch_updates);
+        let validation = if epoch_ended {
+            looked_at(model, state, run, episodes)?
+        } else {
+            None
+        };
         state.elapsed += started.elapsed();
-        if let Some(scores) = &validation {
+        if epoch_ended {
             let line = metrics::Line {
                 update: state.update,
                 epoch: state.update / epoch_updates,
@@ -260,7 +267,7 @@ fn drive(
                 learning_rate: phase.rate,
                 train: losses,
                 meter: meter.take(),
-                val: scores.clone(),
+                val: validation.clone(),
             };
             metrics::log(run.folder, &mut events, &line)?;
         }
@@ -270,7 +277,27 @@ fn drive(
             fraction: budget.fraction(state.update, epoch_updates, state.elapsed),
             elapsed: state.elapsed,
             losses,
+            epoch_ended,
             validation,
         });
     }
+}
+
+/// What the weights that are kept come to on `val`; an error if that is no number, after an update on `episodes`.
+fn looked_at(
+    model: &Model,
+    state: &State,
+    run: Run,
+    episodes: Vec<String>,
+) -> Result<Option<Validation>, TrainError> {
+    let scores = validate::validate(state.kept(model), run.val, AFTER_EPOCH)?;
+    if scores.as_ref().is_some_and(|s| !s.losses.is_finite()) {
+        return Err(TrainError::NotFinite {
+            update: state.update - 1,
+            what: "the validation loss after it".to_owned(),
+            episodes,
+            kept: true,
+        });
+    }
+    Ok(scores)
 }

@@ -14,12 +14,13 @@ pub struct TrainArgs {
     /// Dataset: an .mcap file or a folder of them
     #[arg(long)]
     pub data: PathBuf,
-    /// Which model: `v`, `vp`, `vh`, `vhp`, `vhp-c` or `v-h-p`
-    #[arg(long, default_value = "v-h-p")]
-    pub model: String,
-    /// How to train it: `paper`, `released` (the authors' script) or `fast` (an hour on two cores)
-    #[arg(long, default_value = "fast", value_parser = parse_preset)]
-    pub preset: Preset,
+    /// Which model: `v`, `vp`, `vh`, `vhp`, `vhp-c` or `v-h-p` [default: v-h-p]
+    #[arg(long)]
+    pub model: Option<String>,
+    /// How to train it: `paper`, `released` (the authors' script) or `fast`, made for an hour of two cores (give
+    /// --minutes) [default: fast]
+    #[arg(long, value_parser = parse_preset)]
+    pub preset: Option<Preset>,
     /// One key of the config, over the preset's; repeat for several: `--set training.batch=8` (docs/training.md)
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub set: Vec<String>,

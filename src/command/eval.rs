@@ -21,7 +21,7 @@ use self::fit::Fit;
 use self::ground::Ground;
 use self::ledger::{Joined, Ledger, Place};
 use self::scores::Outcome;
-use super::{sample, say};
+use super::{note, sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
 use crate::episode::EpisodeSource;
 use crate::eval::protocol::Protocol;
@@ -121,10 +121,12 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     bar.finish_and_clear();
     // Where nothing is left, that is the error, and why.
     if left_out.len() < own.len() {
-        left_out.iter().for_each(|why| eprintln!("left out: {why}"));
+        for why in &left_out {
+            note(&format!("left out: {why}"));
+        }
     }
     if args.shard.is_some() {
-        eprintln!("this shard is scored; sum up with --merge once all are");
+        note("this shard is scored; sum up with --merge once all are");
         return Ok(());
     }
     let mut joined = ledger.joined(&contest, &own);
@@ -203,7 +205,7 @@ fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
         }
         figures::write(scored, &summary, out)?;
         write_atomic(&out.join("tables.md"), text.as_bytes())?;
-        eprintln!("tables and figures: {}", out.display());
+        note(&format!("tables and figures: {}", out.display()));
     }
     if args.json {
         return say(&(serde_json::to_string_pretty(&summary)? + "\n"));

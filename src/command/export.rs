@@ -69,7 +69,10 @@ fn read(text: &str) -> anyhow::Result<State> {
     }
     if !state.unknown.is_empty() {
         let keys: Vec<&str> = state.unknown.iter().map(|(key, _)| key.as_str()).collect();
-        eprintln!("--state: without a meaning here: {}", keys.join(", "));
+        super::note(&format!(
+            "--state: without a meaning here: {}",
+            keys.join(", ")
+        ));
     }
     Ok(state)
 }

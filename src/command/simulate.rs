@@ -1,5 +1,6 @@
 //! `poescope simulate`: records planar pushes in simulation as a dataset.
 
+use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, bail};
@@ -20,9 +21,24 @@ const SHEET_ROWS: usize = 12;
 /// Episodes a thread simulates before all are written, in order: what is held in memory at a time.
 const CHUNK_PER_THREAD: usize = 8;
 
+/// Whether two paths are of one file, which need not be there yet.
+fn same(a: &Path, b: &Path) -> bool {
+    let folder = |path: &Path| {
+        let parent = path
+            .parent()
+            .filter(|parent| !parent.as_os_str().is_empty());
+        parent.unwrap_or(Path::new(".")).canonicalize().ok()
+    };
+    a.file_name() == b.file_name() && folder(a) == folder(b)
+}
+
 /// Runs it.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    if args.sheet.as_ref() == Some(&args.out) {
+    if args
+        .sheet
+        .as_deref()
+        .is_some_and(|sheet| same(sheet, &args.out))
+    {
         bail!("--sheet: name another file than --out");
     }
     let stop = stop_on_signals()?;

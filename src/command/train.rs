@@ -4,6 +4,8 @@ mod finish;
 mod sets;
 mod show;
 
+use std::fs::{File, TryLockError};
+use std::path::Path;
 use std::time::Duration;
 
 use anyhow::{Context, anyhow, bail};
@@ -15,12 +17,15 @@ use crate::data::Dataset;
 use crate::episode::EpisodeSource;
 use crate::model::Model;
 use crate::model::checkpoint;
-use crate::model::config::Config;
+use crate::model::config::{Config, Preset};
 use crate::model::kernel::memory::keep_pages;
 use crate::train::schedule::Budget;
 use crate::train::state::{Origin, STATE, State};
 use crate::train::totals::Totals;
 use crate::train::{self, Outcome, Run, metrics, statistics};
+
+/// The file that a run holds while it goes on.
+const LOCK: &str = ".lock";
 
 /// Runs it.
 pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
@@ -54,6 +59,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
         },
     };
     std::fs::create_dir_all(&args.out).with_context(|| format!("making {}", args.out.display()))?;
+    let _lock = lock(&args.out)?;
     let sets = Sets::load(
         &dataset,
         &config,
@@ -64,13 +70,12 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     )?;
     if sets.train().len() < config.training.batch {
         bail!(
-            "{} has {} episodes to train on, a batch needs {}; record more, or lower `training.batch` in a --config",
+            "{}: {sets}, where a batch needs {} of split `train`; mend or record more, or lower `training.batch` (--set)",
             args.data.display(),
-            sets.train().len(),
             config.training.batch
         );
     }
-    eprintln!("{}: {sets}", dataset.name());
+    super::note(&format!("{}: {sets}", dataset.name()));
     let totals = Totals::of(sets.train())?;
     statistics::complete(&mut config, &totals);
     let model = Model::new(config, origin.seed, &Device::Cpu)?;
@@ -95,7 +100,10 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     })?;
     bar.finish_and_clear();
     if state.update > 0 {
-        eprintln!("saved {}; fitting the position probe", args.out.display());
+        super::note(&format!(
+            "saved {}; fitting the position probe",
+            args.out.display()
+        ));
         finish::write(
             state.kept(&model),
             &sets,
@@ -106,10 +114,25 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
         )?;
     }
     match outcome {
-        Outcome::Finished => eprintln!("trained: {}", args.out.display()),
-        Outcome::Stopped => eprintln!("stopped; go on with the same command and --resume"),
+        Outcome::Finished => super::note(&format!("trained: {}", args.out.display())),
+        Outcome::Stopped => super::note("stopped; go on with the same command and --resume"),
     }
     Ok(())
+}
+
+/// The run folder for this run alone, as long as the file is open: two would write over each other.
+fn lock(folder: &Path) -> anyhow::Result<File> {
+    let path = folder.join(LOCK);
+    let failed = || path.display().to_string();
+    let file = File::create(&path).with_context(failed)?;
+    match file.try_lock() {
+        Err(TryLockError::WouldBlock) => bail!(
+            "{}: a run goes on here; wait for its end, or choose another --out",
+            folder.display()
+        ),
+        // Where there are no locks, as on some shared disks, there is none to wait for.
+        _ => Ok(file),
+    }
 }
 
 /// What was typed, but for the program's folder.
@@ -125,15 +148,17 @@ fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
             args.out.display()
         );
     }
+    // One that is done with has no state; it is not to be trained over all the same.
+    let parts = [checkpoint::CONFIG, checkpoint::WEIGHTS, checkpoint::REPORT];
+    if parts.iter().any(|part| args.out.join(part).exists()) {
+        bail!(
+            "{} holds a checkpoint; choose another --out",
+            args.out.display()
+        );
+    }
     let mut config = match &args.config {
         Some(path) => checkpoint::load_config(path)?,
-        None => Config::preset(&args.model, args.preset).with_context(|| {
-            format!(
-                "no model {:?}; there are {}",
-                args.model,
-                Config::NAMES.join(", ")
-            )
-        })?,
+        None => named(args.model.as_deref().unwrap_or("v-h-p"), args.preset)?,
     };
     for assignment in &args.set {
         config = config
@@ -141,6 +166,14 @@ fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
             .map_err(|what| anyhow!("--set {what}"))?;
     }
     Ok(config)
+}
+
+/// A model of that name under a preset.
+fn named(model: &str, preset: Option<Preset>) -> anyhow::Result<Config> {
+    Config::preset(model, preset.unwrap_or(Preset::Fast)).with_context(|| {
+        let names = Config::NAMES.join(", ");
+        format!("no model {model:?}; there are {names}")
+    })
 }
 
 /// The limits that were asked for, if any.
@@ -159,6 +192,15 @@ fn resume(args: &TrainArgs) -> anyhow::Result<(Config, Origin)> {
     let nothing = || format!("nothing to resume in {}", args.out.display());
     let config =
         checkpoint::load_config(&args.out.join(checkpoint::CONFIG)).with_context(nothing)?;
+    if let Some(model) = args.model.as_ref()
+        && args.config.is_none()
+        && *model != config.name
+    {
+        bail!(
+            "--model {model} is not this run's, which is {}; leave it out, or start a new --out",
+            config.name
+        );
+    }
     for assignment in &args.set {
         let changed = config.clone().set(assignment);
         if changed.map_err(|what| anyhow!("--set {what}"))? != config {
@@ -188,11 +230,11 @@ fn same_run(args: &TrainArgs, origin: &Origin, dataset: &Dataset) -> anyhow::Res
         );
     }
     if rayon::current_num_threads() != origin.threads {
-        eprintln!(
+        super::note(&format!(
             "this run was started with {} threads; with {} its sums round differently from here on",
             origin.threads,
             rayon::current_num_threads()
-        );
+        ));
     }
     let budget = asked(args).unwrap_or(origin.budget);
     Ok(Origin {

@@ -38,8 +38,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     let report = Report::asked(&args);
     let in_terminal = report.is_none() && io::stdout().is_terminal();
     if !in_terminal && report.is_none() {
-        eprintln!(
-            "poescope: standard output is no terminal, so one frame is drawn as with --print"
+        super::note(
+            "poescope: standard output is no terminal, so one frame is drawn as with --print",
         );
     }
     if !in_terminal && args.serve.is_some() {
@@ -71,6 +71,13 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         if args.serve.is_some() {
             // It is answered once its episode is there, and then it must not take the place of the address.
             wait(&mut app)?;
+        }
+        if !in_terminal {
+            // What is asked of another episode or model than there is must not be answered for this one.
+            wait(&mut app)?;
+            if let Some(Message { error: true, text }) = app.session.snapshot().message {
+                bail!("--state: {text}");
+            }
         }
     }
     if send(&mut app, &keys)? == Flow::Quit {

@@ -161,15 +161,6 @@ impl<'a> Episodes<'a> {
         self.indices.is_empty()
     }
 
-    /// The first of them, `count` at most.
-    #[must_use]
-    pub fn first(self, count: usize) -> Self {
-        Self {
-            indices: &self.indices[..count.min(self.indices.len())],
-            ..self
-        }
-    }
-
     /// Name of the `i`-th.
     pub fn id(self, i: usize) -> &'a str {
         self.store.id(self.indices[i])

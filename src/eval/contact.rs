@@ -10,7 +10,7 @@ use crate::model::probe::Probe;
 use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace};
 use serde::Serialize;
 
-use super::score::{Contest, EpisodeScores, Subject};
+use super::score::{Candidate, Contest, EpisodeScores, Subject};
 
 /// Steps before and after contact that are shown.
 const AROUND: i64 = 6;
@@ -71,7 +71,8 @@ pub struct Aligned {
 /// prior that knows nothing before contact. So is an episode that starts in contact.
 pub fn aligned(contest: &Contest, all: &[EpisodeScores]) -> (f32, Vec<Aligned>) {
     let peak = |e: &EpisodeScores| e.force_newtons.iter().copied().fold(0.0, f32::max);
-    let known = contest.candidates.iter().find_map(|c| c.contact_newtons);
+    let of = |c: &Candidate| c.contact_newtons.filter(|&newtons| newtons > 0.0);
+    let known = contest.candidates.iter().find_map(of);
     let threshold = known.unwrap_or_else(|| contact_newtons(all.iter().map(peak).collect()));
     let first: Vec<Option<usize>> = all
         .iter()
@@ -121,7 +122,7 @@ fn averaged(subject: &Subject, expert: Expert, offset: i64, values: &[f64]) -> O
 mod tests {
     use super::*;
     use crate::eval::protocol::Protocol;
-    use crate::eval::score::{Candidate, SubjectScores};
+    use crate::eval::score::SubjectScores;
     use crate::eval::setting::Setting;
 
     /// An episode of ten steps that is touched at `onset`, where vision has the share `touched`, and 0.2 elsewhere, but for

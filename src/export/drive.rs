@@ -136,20 +136,24 @@ fn shown(
     wait(session, onlooker)?;
     let told = session.snapshot().message.filter(|message| message.error);
     session.apply(Command::SeekClamped(*steps.start()));
-    if let Some(told) = told {
+    if let Some(told) = &told {
         let name = |snapshot: &Snapshot| Some(snapshot.models.get(snapshot.model)?.name.clone());
         let name = name(&session.snapshot()).unwrap_or_default();
         let meta = session.snapshot().episode.map(|episode| episode.id.clone());
         let id = meta.unwrap_or_default();
         onlooker.note(&format!("{id}, {name}: {}", told.text));
     }
-    steps
-        .map(|step| {
-            session.apply(Command::SeekClamped(step));
-            wait(session, onlooker)?;
-            Ok(session.snapshot())
-        })
-        .collect()
+    let at = |step| {
+        session.apply(Command::SeekClamped(step));
+        wait(session, onlooker)?;
+        Ok(session.snapshot())
+    };
+    let mut snapshots: Vec<Snapshot> = steps.map(at).collect::<Result<_, ExportError>>()?;
+    // A seek has nothing to complain of; what the state was refused for must not be lost by it.
+    if let Some(first) = snapshots.first_mut() {
+        first.message = first.message.take().or(told);
+    }
+    Ok(snapshots)
 }
 
 /// A state without what the export itself decides: where it is, and what only a face shows.

@@ -21,6 +21,9 @@ const FEW: usize = 20;
 /// An inflation that rounding took to zero or below would make infinitely many effective experts.
 const LEAST_INFLATION: f64 = 1e-6;
 
+/// So far beyond ±1 a correlation may come by rounding.
+const ROUNDING: f64 = 1e-6;
+
 /// How two experts' position errors go together.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Correlation {
@@ -82,7 +85,9 @@ pub fn dependence(errors: &[Vec<[f32; 2]>]) -> Option<Dependence> {
 }
 
 /// [`dependence`] of what the errors have beyond the probe's `residual` R_p (xx, xy, yy in square metres), which is
-/// taken off every variance and covariance. None also where an expert's variance along an axis is not above R_p's.
+/// taken off every variance and covariance. None also where an expert's variance along an axis is not above R_p's, or
+/// where R_p takes off so much that what is left is no correlation: a ρ beyond ±1, or so negative that n experts cannot
+/// have it among them.
 pub fn dependence_beyond(errors: &[Vec<[f32; 2]>], residual: [f32; 3]) -> Option<Dependence> {
     let experts = errors.len();
     let length = errors.first()?.len();
@@ -112,6 +117,9 @@ pub fn dependence_beyond(errors: &[Vec<[f32; 2]>], residual: [f32; 3]) -> Option
     }
     let mean_rho = pairs.iter().map(|pair| pair.rho).sum::<f64>() / pairs.len() as f64;
     let inflation = inflation(0.0, 1.0, experts, mean_rho);
+    if residual.iter().any(|&r| r > 0.0) && inflation <= LEAST_INFLATION {
+        return None;
+    }
     let effective = experts as f64 / inflation;
     Some(Dependence {
         pairs,
@@ -155,7 +163,7 @@ fn correlation(a: &[f64], b: &[f64], shared: f64) -> Option<f64> {
     };
     let variances = [moment(a, mean_a, a, mean_a), moment(b, mean_b, b, mean_b)];
     let rho = moment(a, mean_a, b, mean_b) / (variances[0] * variances[1]).sqrt();
-    let sound = variances.iter().all(|v| *v > 0.0) && rho.is_finite();
+    let sound = variances.iter().all(|v| *v > 0.0) && rho.abs() <= 1.0 + ROUNDING;
     sound.then_some(rho.clamp(-1.0, 1.0))
 }
 

@@ -86,10 +86,13 @@ pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
     let temporary = path.with_extension("part");
     let mut file = std::fs::File::create(&temporary).map_err(file_error)?;
     // On disk before it has its name: a power cut must not leave an empty file under it.
-    file.write_all(bytes)
-        .and_then(|()| file.sync_all())
-        .map_err(file_error)?;
-    std::fs::rename(&temporary, path).map_err(file_error)
+    let written = file.write_all(bytes).and_then(|()| file.sync_all());
+    let renamed = written.and_then(|()| std::fs::rename(&temporary, path));
+    renamed.map_err(|cause| {
+        // On a full disk it would be in the way of everything else.
+        let _ = std::fs::remove_file(&temporary);
+        file_error(cause)
+    })
 }
 
 /// Everything in a file.

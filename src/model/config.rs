@@ -160,6 +160,12 @@ impl Config {
             );
             return refuse("mixtures", what);
         }
+        if self
+            .step_secs
+            .is_some_and(|secs| !(secs.is_finite() && secs > 0.0))
+        {
+            return refuse("step_secs", "must be a positive number");
+        }
         self.haptic.validate("haptic", &HAPTIC_CHANNELS)?;
         self.proprio.validate("proprio", &PROPRIO_CHANNELS)?;
         self.training.validate(streams.len())
@@ -207,6 +213,8 @@ mod tests {
             config.validate().map_err(|error| error.key)
         };
         assert_eq!(refused(|c| c.hidden = 4_000_000_000), Err("hidden"));
+        assert_eq!(refused(|c| c.step_secs = Some(-0.1)), Err("step_secs"));
+        assert_eq!(refused(|c| c.training.epochs = 0), Err("training.epochs"));
         assert_eq!(refused(|c| c.experts.push(Expert::Haptic)), Err("experts"));
         assert_eq!(refused(|c| c.experts.clear()), Err("experts"));
         assert_eq!(refused(|c| c.haptic.names.clear()), Err("haptic"));

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Session;
+use super::command::Looping;
 use super::snapshot::{Event, EventKind};
 use super::worker::Target;
 use crate::measure::failure::Order;
@@ -146,7 +147,12 @@ impl Session {
                     format!("steps {} to {} selected; L loops them", first + 1, last + 1),
                 )
             }
-            Some(_) => (None, "nothing selected".to_owned()),
+            Some(_) => {
+                if self.playback.looping == Looping::Selection {
+                    self.playback.looping = Looping::Off;
+                }
+                (None, "nothing selected".to_owned())
+            }
         };
         self.selection = selection;
         self.keep_selection();

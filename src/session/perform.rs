@@ -165,8 +165,8 @@ impl Session {
     fn travel(&mut self, settings: Option<Settings>, verb: &str) {
         if let Some(settings) = settings {
             self.settings = settings;
-            self.inform(format!("{verb}: done"));
-            self.repair();
+            let repaired = self.switch_on_all();
+            self.inform(repaired.unwrap_or_else(|| format!("{verb}: done")));
         } else {
             self.inform(format!("nothing to {verb}"));
         }
@@ -174,23 +174,31 @@ impl Session {
 
     /// Switches from another model may leave this one without an active expert somewhere: then all come on.
     pub(super) fn repair(&mut self) {
-        let Some(model) = self.model().map(Arc::clone) else {
-            return;
-        };
-        let factors = model.factors();
-        if model.has_product() && self.settings.switches.first_silent_step(&factors).is_some() {
-            self.change(|session| {
-                for &expert in &factors {
-                    session.settings.switches.set(expert, Reach::EPISODE, 1.0);
-                }
-                let names: Vec<&str> = factors.iter().copied().map(Expert::name).collect();
-                Ok(format!(
-                    "{} on again: nothing else was active in {}",
-                    names.join(", "),
-                    model.name
-                ))
-            });
+        if self.is_silent() {
+            self.change(|session| Ok(session.switch_on_all().unwrap_or_default()));
         }
+    }
+
+    /// Whether the switches leave the model without an active expert somewhere.
+    fn is_silent(&self) -> bool {
+        let switches = &self.settings.switches;
+        self.model()
+            .is_some_and(|m| m.has_product() && switches.first_silent_step(&m.factors()).is_some())
+    }
+
+    /// Switches every expert on where the model is silent, and says so. No change of its own: on the way through what
+    /// was done before, one would stand in the way of all that is earlier.
+    fn switch_on_all(&mut self) -> Option<String> {
+        let model = self.model().map(Arc::clone).filter(|_| self.is_silent())?;
+        let factors = model.factors();
+        for &expert in &factors {
+            self.settings.switches.set(expert, Reach::EPISODE, 1.0);
+        }
+        let names: Vec<&str> = factors.iter().copied().map(Expert::name).collect();
+        let (names, name) = (names.join(", "), &model.name);
+        Some(format!(
+            "{names} on again: nothing else was active in {name}"
+        ))
     }
 
     fn go_episodes(&mut self, by: i64) {

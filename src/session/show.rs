@@ -14,6 +14,7 @@ use super::worker::{Answer, Inferred, Opened, Pictures};
 use crate::episode::{EpisodeSource, Frame};
 use crate::measure::frame::signed_difference;
 use crate::measure::fusion::{mean_share, position_shares, precision_shares};
+use crate::modality::Expert;
 
 impl Session {
     /// Context and horizon fitted to the present episode.
@@ -32,7 +33,10 @@ impl Session {
             None => wished_rollout(&self.settings),
         };
         let first_belief = self.model().map_or(0, |model| model.frame_stack);
-        let badge_step = cursor.max(first_belief);
+        let badge_of = |model: &Arc<ModelInfo>| {
+            let first = model.frame_stack;
+            badge(model, &self.settings.switches, first, cursor.max(first))
+        };
         let inferred = answer.and_then(|answer| answer.inferred.as_deref());
         let at_cursor = inferred.zip(cursor.checked_sub(first_belief));
         let fault = answer.and_then(|answer| answer.fault.clone());
@@ -51,9 +55,7 @@ impl Session {
             horizon: rollout.horizon,
             start: rollout.start,
             experts: self.expert_views(inferred),
-            badge: self.model().map_or(Badge::NoProduct, |m| {
-                badge(m, &self.settings.switches, first_belief, badge_step)
-            }),
+            badge: self.model().map_or(Badge::NoProduct, badge_of),
             frames: answer
                 .map(|answer| FrameRow {
                     input: input(answer, cursor),
@@ -79,7 +81,10 @@ impl Session {
             board: self.board.clone().filter(|_| self.wants.board),
             table: Arc::clone(self.table.view()),
             other: answer
-                .and_then(|answer| other_view(answer, cursor))
+                .and_then(|answer| {
+                    let model = self.models.get(answer.other.as_ref()?.model)?;
+                    other_view(answer, cursor, badge_of(model))
+                })
                 .map(Arc::new),
             events: self.events(),
             corruptions: self
@@ -150,7 +155,12 @@ impl Session {
                 .unwrap_or_default();
             ExpertView {
                 expert,
-                alpha: model.alpha(&self.settings.switches, expert, step),
+                alpha: if expert == Expert::Prior && !model.prior_expert {
+                    // It is stated, and not multiplied in.
+                    0.0
+                } else {
+                    model.alpha(&self.settings.switches, expert, step)
+                },
                 latent: at_cursor.map(|(inferred, belief)| {
                     let sensors = inferred.trace.experts.get(i);
                     let gaussians = sensors.unwrap_or(&inferred.beliefs.prior);
@@ -290,7 +300,7 @@ fn position_view(opened: &Opened, pictures: &Pictures, cursor: usize) -> Option<
 }
 
 /// The second model beside the first.
-fn other_view(answer: &Answer, cursor: usize) -> Option<OtherView> {
+fn other_view(answer: &Answer, cursor: usize, badge: Badge) -> Option<OtherView> {
     let other = answer.other.as_ref()?;
     let (own, beside) = (
         answer.pictures.strip.get(cursor)?,
@@ -307,6 +317,7 @@ fn other_view(answer: &Answer, cursor: usize) -> Option<OtherView> {
         strip: Arc::clone(&other.pictures.strip),
         position: position_view(answer.opened.as_ref()?, &other.pictures, cursor),
         psnr_db: Arc::clone(&other.pictures.psnr_db),
+        badge,
         fault: other.fault.clone(),
     })
 }

@@ -32,8 +32,8 @@ pub struct Line {
     /// Means over the epoch's updates.
     #[serde(flatten)]
     pub meter: Summary,
-    /// Scores on the validation split.
-    pub val: Validation,
+    /// Scores on the validation split; none where it is empty.
+    pub val: Option<Validation>,
 }
 
 /// Gathers what the updates of an epoch measure.
@@ -118,16 +118,20 @@ impl Line {
     /// The same as TensorBoard's tags and values.
     fn scalars(&self) -> BTreeMap<String, f32> {
         let mut all = BTreeMap::new();
-        for (split, losses) in [("train", self.train), ("val", self.val.losses)] {
+        let mut losses = |split: &str, losses: Losses| {
             for (name, value) in losses.named() {
                 all.insert(format!("{split}/{name}"), value);
             }
-        }
-        let psnr_db = &self.val.psnr_db;
-        let mean = psnr_db.iter().sum::<f64>() / psnr_db.len().max(1) as f64;
-        all.insert("val/open_loop_psnr_db".to_owned(), mean as f32);
-        for (i, &kl) in self.val.kl_per_latent.iter().enumerate() {
-            all.insert(format!("kl_per_latent/{i:02}"), kl as f32);
+        };
+        losses("train", self.train);
+        if let Some(val) = &self.val {
+            losses("val", val.losses);
+            if let Some(mean) = val.mean_psnr_db() {
+                all.insert("val/open_loop_psnr_db".to_owned(), mean as f32);
+            }
+            for (i, &kl) in val.kl_per_latent.iter().enumerate() {
+                all.insert(format!("kl_per_latent/{i:02}"), kl as f32);
+            }
         }
         for (network, norm) in &self.meter.gradient_norm {
             all.insert(format!("gradient_norm/{network}"), norm.mean as f32);

@@ -9,11 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::schedule::Budget;
+use super::step::Losses;
 use crate::model::Model;
 use crate::model::checkpoint::{self, CheckpointError};
 use crate::model::kernel::adam::Moments;
 use crate::model::kernel::running_mean;
 
+/// The largest number in half precision.
+const MOST_HALF: f32 = 65504.0;
 /// The file that a run is resumed from.
 pub const STATE: &str = "state.safetensors";
 
@@ -41,6 +44,8 @@ pub struct State {
     pub update: u64,
     /// Time trained, over all sittings.
     pub elapsed: Duration,
+    /// Running means of the losses.
+    pub losses: Option<Losses>,
     /// Adam's, by network.
     pub moments: BTreeMap<String, Moments>,
     /// The running mean of the weights, where the config wants one.
@@ -53,6 +58,8 @@ struct Counters {
     origin: Origin,
     update: u64,
     elapsed_secs: f64,
+    #[serde(default)]
+    losses: Option<Losses>,
     moment_updates: BTreeMap<String, u32>,
 }
 
@@ -118,7 +125,7 @@ impl State {
     }
 
     /// Writes the state, and the weights as a checkpoint that can be looked at while the run goes on: in half
-    /// precision, which costs a hundredth of a decibel at most. The state keeps every bit. Each file is replaced in
+    /// precision, where that holds them; it costs a hundredth of a decibel at most. The state keeps every bit. Each file is replaced in
     /// one go, and none by numbers that are not finite.
     pub fn save(&self, model: &Model, folder: &Path) -> Result<(), TrainError> {
         for network in model.networks() {
@@ -128,10 +135,19 @@ impl State {
                     what: format!("a weight of `{}`", network.name),
                     update: self.update,
                     episodes: Vec::new(),
+                    kept: self.update > 0,
                 });
             }
         }
-        checkpoint::save(self.kept(model), folder, DType::F16, Some(self.update))?;
+        let kept = self.kept(model);
+        let mut dtype = DType::F16;
+        for network in kept.networks() {
+            let theta = network.theta().to_vec1::<f32>()?;
+            if theta.iter().any(|x| x.abs() > MOST_HALF) {
+                dtype = DType::F32;
+            }
+        }
+        checkpoint::save(kept, folder, dtype, Some(self.update))?;
         let mut tensors = Vec::new();
         for network in model.networks() {
             tensors.push((
@@ -154,6 +170,7 @@ impl State {
             origin: self.origin.clone(),
             update: self.update,
             elapsed_secs: self.elapsed.as_secs_f64(),
+            losses: self.losses,
             moment_updates: self
                 .moments
                 .iter()
@@ -224,6 +241,7 @@ impl State {
             origin: counters.origin,
             update: counters.update,
             elapsed,
+            losses: counters.losses,
             moments,
             mean,
         })

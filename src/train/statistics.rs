@@ -21,24 +21,22 @@ pub fn complete(config: &mut Config, totals: &Totals) {
         (&mut config.proprio, Modality::Proprio, &FLOORS[1], 1.0),
     ];
     for (channels, modality, floors, constant) in each {
-        if !channels.mean.is_empty() {
-            continue;
-        }
         let at: Vec<usize> = channels
             .columns(known(modality))
             .map(|(at, _, _)| at)
             .collect();
-        if scaling == Scaling::Released {
-            channels.mean = vec![0.0; at.len()];
-            channels.scale = vec![constant; at.len()];
-            continue;
-        }
         let moments = totals.moments(modality);
-        channels.mean = at.iter().map(|&at| moments[at].0 as f32).collect();
-        channels.scale = at
-            .iter()
-            .map(|&at| (moments[at].1 as f32).max(floors[at]))
-            .collect();
+        let measured = |&at: &usize| match scaling {
+            Scaling::Released => (0.0, constant),
+            Scaling::Standard => (moments[at].0 as f32, (moments[at].1 as f32).max(floors[at])),
+        };
+        let (mean, scale): (Vec<f32>, Vec<f32>) = at.iter().map(measured).unzip();
+        if channels.mean.is_empty() {
+            channels.mean = mean;
+        }
+        if channels.scale.is_empty() {
+            channels.scale = scale;
+        }
     }
     if config.training.error_weights.is_empty() {
         config.training.error_weights = error_weights(config, totals);

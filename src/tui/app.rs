@@ -58,6 +58,9 @@ enum Drag {
     Border(Border, Position, i16),
 }
 
+/// Keys that mean the same where the help is open; any other one closes it.
+const OVER_HELP: [&str; 5] = ["?", "<f1>", "<esc>", "q", "<c-c>"];
+
 /// A session with a face.
 pub struct App {
     /// What is looked at.
@@ -137,6 +140,11 @@ impl App {
     }
 
     fn take(&mut self, key: &Key, snapshot: &Snapshot) -> Flow {
+        if self.face.help.is_some() && !OVER_HELP.contains(&key.name()) {
+            // What it would change could not be seen.
+            self.face.help = None;
+            return Flow::Go;
+        }
         if self.list_takes(key, snapshot) || self.choose_set(key, snapshot) {
             return Flow::Go;
         }

@@ -10,6 +10,8 @@
 
 pub mod list;
 
+use std::borrow::Cow;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
@@ -58,6 +60,16 @@ impl Places {
             ends,
         }
     }
+}
+
+/// A name that fits into so many columns: of names that begin alike the ends tell them apart.
+fn tail(name: &str, columns: u16) -> Cow<'_, str> {
+    if width(name) <= columns {
+        return name.into();
+    }
+    let mut ends = name.char_indices().map(|(at, _)| &name[at..]);
+    let end = ends.find(|end| width(end) < columns).unwrap_or_default();
+    format!("…{end}").into()
 }
 
 /// The header of each column with the column it sorts by, where it does.
@@ -207,7 +219,7 @@ fn episode(
         width: line.width.min(7 + places.id),
         ..line
     };
-    text(buf, name, 7, 0, &row.id, Style::new());
+    text(buf, name, 7, 0, &tail(&row.id, places.id), Style::new());
     let split = row.split.map_or("–", crate::episode::Split::name);
     right(buf, line, 7 + places.id + 6, 0, split, dim());
     let Some(score) = &row.score else {
@@ -306,6 +318,13 @@ impl List {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_names_keep_their_ends() {
+        assert_eq!(tail("push-0012", 9), "push-0012");
+        assert_eq!(tail("pybullet-val-0012", 8), "…al-0012");
+        assert_eq!(tail("実験-0012", 7), "…-0012");
+    }
 
     #[test]
     fn the_selected_row_is_always_on_the_screen() {

@@ -182,6 +182,7 @@ pub fn compare(snapshot: &mut Snapshot) {
     "vhp".clone_into(&mut model.name);
     snapshot.models.push(Arc::new(model));
     snapshot.other = Some(Arc::new(OtherView {
+        badge: Badge::Trained,
         model: 1,
         difference: Some(minus(&prediction, &lagging)),
         frames: FrameRow {

@@ -4,6 +4,7 @@
 use std::fmt::{Display, Write};
 
 use crate::session::command::Scope;
+use crate::session::model_key;
 use crate::session::snapshot::{
     Badge, Estimate, ExpertView, LatentView, PositionView, Snapshot, StepPsnr,
 };
@@ -19,6 +20,8 @@ pub fn plain(snapshot: &Snapshot) -> String {
     latent(&mut report, "belief", snapshot.belief.as_ref());
     position(&mut report, snapshot.position.as_ref(), snapshot.cursor);
     frames(&mut report, snapshot);
+    changed(&mut report, snapshot);
+    beside(&mut report, snapshot);
     told(&mut report, snapshot);
     report.0
 }
@@ -186,12 +189,68 @@ fn frames(report: &mut Report, snapshot: &Snapshot) {
     report.number("prediction PSNR", psnr.prediction, "dB");
 }
 
-fn told(report: &mut Report, snapshot: &Snapshot) {
-    match &snapshot.badge {
-        Badge::Trained => report.fact("switches", "trained"),
-        Badge::Untrained(why) => report.fact("switches", format!("untrained, {why}")),
-        Badge::NoProduct => report.fact("switches", "none, the model has no product"),
+/// What is not as recorded: inputs, controls; and whether a sample is shown.
+fn changed(report: &mut Report, snapshot: &Snapshot) {
+    for (modality, corruption) in &snapshot.corruptions {
+        let (kind, severity) = (corruption.damage.name(), corruption.strength());
+        let from = corruption.from + 1;
+        let steps = match corruption.until {
+            Some(until) => format!("steps {from} to {until}"),
+            None => format!("from step {from}"),
+        };
+        let label = format!("input {} damaged", modality.name());
+        report.fact(&label, format!("{kind} {severity:.3}, {steps}"));
     }
+    if let Some(edit) = &snapshot.control_edit {
+        let (from, turned, scale) = (edit.from + 1, edit.rotate_deg, edit.scale);
+        let mirrored = if edit.mirror { ", mirrored" } else { "" };
+        let what =
+            format!("from step {from}, turned {turned:.1} degrees, scaled {scale:.3}{mirrored}");
+        report.fact("controls edited", what);
+    }
+    if snapshot.sampling.shown {
+        report.fact(
+            "shown",
+            format!("a sample, seed {}", snapshot.sampling.seed),
+        );
+    }
+}
+
+/// The second model under the cursor.
+fn beside(report: &mut Report, snapshot: &Snapshot) {
+    let Some(other) = &snapshot.other else {
+        return;
+    };
+    report.fact("other model", model_key(&snapshot.models, other.model));
+    if let Some(fault) = &other.fault {
+        report.fact("other model shows nothing", fault);
+        return;
+    }
+    let psnr = other.psnr_db.get(snapshot.cursor).copied();
+    let psnr = psnr.unwrap_or_default();
+    report.number("other model belief PSNR", psnr.belief, "dB");
+    report.number("other model prediction PSNR", psnr.prediction, "dB");
+    let error = |of: fn(&PositionView) -> Option<f32>| other.position.as_ref().and_then(of);
+    for (name, error) in [
+        ("belief", error(|at| at.belief_error_m)),
+        ("prediction", error(|at| at.prediction_error_m)),
+    ] {
+        let label = format!("other model position {name} error");
+        report.number(&label, error.map(|metres| metres * 100.0), "cm");
+    }
+    report.fact("other model switches", trained(&other.badge));
+}
+
+fn trained(badge: &Badge) -> String {
+    match badge {
+        Badge::Trained => "trained".to_owned(),
+        Badge::Untrained(why) => format!("untrained, {why}"),
+        Badge::NoProduct => "none, the model has no product".to_owned(),
+    }
+}
+
+fn told(report: &mut Report, snapshot: &Snapshot) {
+    report.fact("switches", trained(&snapshot.badge));
     if snapshot.busy {
         report.fact("busy", "still computing");
     }
@@ -214,12 +273,41 @@ fn percent(share: Option<f32>) -> Option<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::measure::corruption::{Corruption, Damage};
+    use crate::modality::Modality;
+    use crate::session::settings::ControlEdit;
     use crate::session::snapshot::Message;
     use crate::tui::fixture;
 
     #[test]
     fn a_fact_a_line_in_a_fixed_order() {
         insta::assert_snapshot!(plain(&fixture::snapshot(8, 16)));
+    }
+
+    #[test]
+    fn what_is_not_as_recorded_is_said_and_so_is_the_model_beside() {
+        let mut snapshot = fixture::snapshot(8, 16);
+        fixture::compare(&mut snapshot);
+        let damage = Corruption {
+            damage: Damage::Noise,
+            severity: 0.5,
+            from: 2,
+            ..Corruption::default()
+        };
+        snapshot.corruptions = vec![(Modality::Haptic, damage)];
+        snapshot.control_edit = Some(ControlEdit {
+            mirror: true,
+            ..ControlEdit::from(6)
+        });
+        let text = plain(&snapshot);
+        for line in [
+            "input haptic damaged: noise 0.500, from step 3",
+            "controls edited: from step 7, turned 0.0 degrees, scaled 1.000, mirrored",
+            "other model: vhp",
+            "other model switches: trained",
+        ] {
+            assert!(text.lines().any(|it| it == line), "{line} in {text}");
+        }
     }
 
     #[test]

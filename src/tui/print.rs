@@ -9,6 +9,7 @@ use ratatui::style::{Color, Modifier};
 
 use super::draw;
 use super::face::Face;
+use super::paint::width;
 use super::theme::Depth;
 use crate::session::snapshot::Snapshot;
 
@@ -34,7 +35,14 @@ pub fn to_text(buf: &Buffer, styled: bool) -> String {
             .rposition(|cell| !blank(cell))
             .map_or(0, |last| last + 1);
         let mut current = String::new();
+        // Behind a wide letter stands a cell that it covers.
+        let mut covered = 0;
         for cell in &cells[..end] {
+            if covered > 0 {
+                covered -= 1;
+                continue;
+            }
+            covered = width(cell.symbol()).saturating_sub(1);
             if styled {
                 let codes = codes(cell);
                 if codes != current {
@@ -129,6 +137,13 @@ mod tests {
             "a\x1b[0m\x1b[1;38;2;1;2;3mb\x1b[0m\nc\n"
         );
         assert_eq!(to_text(&buf, false), "ab\nc\n");
+    }
+
+    #[test]
+    fn a_wide_letter_takes_its_two_columns() {
+        let mut buf = Buffer::empty(ratatui::layout::Rect::new(0, 0, 6, 1));
+        buf.set_string(0, 0, "実x実", Style::new());
+        assert_eq!(to_text(&buf, false), "実x実\n");
     }
 
     #[test]

@@ -86,6 +86,11 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
 
     let host = Host::of(|name| std::env::var(name).ok(), cell_size());
     let mut asking = None;
+    if host.tmux {
+        // What is copied goes through tmux too, whatever images are made of.
+        tmux::let_through();
+        screen.copy_through_tmux();
+    }
     match images {
         Images::Force(protocol) => {
             if let Some(graphics) = host.forced(protocol) {
@@ -94,10 +99,6 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
         }
         // Where there are not even colours there are no images, and some of the oldest would print the question.
         Images::Ask if app.face.depth.has_shades() => {
-            if host.tmux {
-                tmux::let_through();
-                screen.copy_through_tmux();
-            }
             screen.write(&host.question())?;
             asking = Some(Asking::new(host));
         }

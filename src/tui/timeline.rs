@@ -132,7 +132,7 @@ fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     }
     let playing = if snapshot.playing { "▸" } else { "‖" };
     let mut play = format!("{playing} {}×", snapshot.speed);
-    if pane.width >= 54 && snapshot.looping == Looping::All {
+    if pane.width >= 54 && snapshot.looping != Looping::Off {
         play.push_str(" loop");
     }
     at = text(

@@ -474,6 +474,15 @@ fn names_that_differ_only_in_their_ending_have_tables_of_their_own() {
 }
 
 #[test]
+fn a_state_that_a_model_refuses_is_said_beside_its_rows() {
+    let folder = tempfile::tempdir().unwrap();
+    let state = "v=1;alpha=vision:0,haptic:0,proprio:0,prior:0";
+    exported(folder.path(), "a.csv", &["--state", state]);
+    let episodes = std::fs::read_to_string(folder.path().join("a.episodes.csv")).unwrap();
+    assert!(episodes.contains("leaves no active expert"), "{episodes}");
+}
+
+#[test]
 fn every_column_is_documented() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/export.md");
     let text = std::fs::read_to_string(path).unwrap();

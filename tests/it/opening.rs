@@ -11,13 +11,15 @@ use poescope::episode::{EpisodeSource, Layout};
 
 use crate::data::{BASE, recordings, sample, small, write};
 
-/// Writes the sample again with other options.
-fn rewritten(options: WriteOptions, path: &Path) {
+/// Writes the sample again with other options, each message's last byte changed by `flip`.
+fn rewritten(options: WriteOptions, flip: u8, path: &Path) {
     let bytes = fs::read(sample()).unwrap();
     let file = fs::File::create(path).unwrap();
     let mut writer = options.profile("ros2").create(file).unwrap();
     for message in MessageStream::new(&bytes).unwrap() {
-        writer.write(&message.unwrap()).unwrap();
+        let mut message = message.unwrap();
+        *message.data.to_mut().last_mut().unwrap() ^= flip;
+        writer.write(&message).unwrap();
     }
     for meta in Dataset::open(&sample()).unwrap().metas() {
         let entries = [
@@ -72,7 +74,7 @@ fn files_that_lack_an_index_open_all_the_same() {
     let expected = recordings(&sample());
     for (name, options, indexed) in options {
         let path = folder.path().join(format!("{name}.mcap"));
-        rewritten(options, &path);
+        rewritten(options, 0, &path);
         assert_eq!(recordings(&path), expected, "{name}");
         let dataset = Dataset::open(&path).unwrap();
         assert_eq!(dataset.image_counts(), [Some(8), Some(10)], "{name}");
@@ -88,6 +90,20 @@ fn files_that_lack_an_index_open_all_the_same() {
     let all = Dataset::open(folder.path()).unwrap();
     assert_eq!(all.metas().len(), 22);
     assert!(all.load(21, Layout::default()).is_ok());
+}
+
+#[test]
+fn what_is_not_packed_is_told_apart_by_the_data_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let hash = |flip: u8| {
+        let path = folder.path().join("a.mcap");
+        rewritten(WriteOptions::new().compression(None), flip, &path);
+        let dataset = Dataset::open(&path).unwrap();
+        assert!(dataset.files()[0].notes.is_empty());
+        dataset.data_hash().to_owned()
+    };
+    assert_eq!(hash(0), hash(0));
+    assert_ne!(hash(0), hash(1));
 }
 
 #[test]

@@ -170,6 +170,7 @@ fn fails(
             update,
             what,
             episodes,
+            ..
         }) => (update, what, episodes),
         other => panic!("{other:?}"),
     }

@@ -2,6 +2,8 @@
 #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
 
 use std::fs;
+use std::path::PathBuf;
+use std::process::{Command, Stdio};
 
 use poescope::episode::Track;
 use serde_json::Value;
@@ -47,4 +49,115 @@ fn an_episode_without_a_sensor_is_left_out_and_a_resumed_run_keeps_its_config() 
         !output.status.success() && said.contains("is not what this run was started with"),
         "{said}"
     );
+}
+
+/// Episodes of six images, and a training of one update on them.
+struct Small {
+    folder: tempfile::TempDir,
+    data: PathBuf,
+}
+
+impl Small {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let data = folder.path().join("data");
+        fs::create_dir(&data).unwrap();
+        simulated(
+            data.join("train.mcap"),
+            4,
+            &["--steps", "6", "--split", "train"],
+        );
+        Self { folder, data }
+    }
+
+    fn out(&self) -> PathBuf {
+        self.folder.path().join("run")
+    }
+
+    fn train(&self, options: &[&str]) -> Command {
+        let mut train = poescope();
+        train.args(["train", "--updates", "1", "--set", "training.batch=2"]);
+        train.args(options).arg("--data").arg(&self.data);
+        train.arg("--out").arg(self.out());
+        train
+    }
+
+    fn refused(&self, options: &[&str], why: &str) {
+        let output = self.train(options).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success() && said.contains(why), "{said}");
+    }
+
+    fn report(&self) -> Value {
+        let report = fs::read_to_string(self.out().join("report.json")).unwrap();
+        serde_json::from_str(&report).unwrap()
+    }
+}
+
+#[test]
+fn a_run_folder_belongs_to_one_run() {
+    let small = Small::new();
+    // Whoever listened is gone, as where Ctrl-C has ended `| tee log`: nothing is lost by it.
+    let scale = "haptic.scale=[10, 10, 10, 1, 1, 1]";
+    let mut child = small.train(&["--model", "v", "--set", scale]);
+    let mut child = child.stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stderr.take());
+    assert!(child.wait().unwrap().success());
+    assert_eq!(small.report()["updates"], 1);
+    // What is said of the channels stays, what is not is measured.
+    let config = fs::read_to_string(small.out().join("config.toml")).unwrap();
+    let config: toml::Table = toml::from_str(&config).unwrap();
+    let haptic = &config["haptic"];
+    assert_eq!(haptic["scale"][0].as_float(), Some(10.0));
+    assert_ne!(haptic["mean"][2].as_float(), Some(0.0));
+
+    small.refused(&[], "holds a run already; add --resume");
+    small.refused(
+        &["--resume", "--model", "vhp"],
+        "--model vhp is not this run's, which is v",
+    );
+    let lock = fs::File::create(small.out().join(".lock")).unwrap();
+    lock.lock().unwrap();
+    small.refused(&["--resume"], "a run goes on here");
+    drop(lock);
+    // What is done with and has been copied has no state, and is no less to be kept.
+    let weights = || fs::read(small.out().join("weights.safetensors")).unwrap();
+    let before = weights();
+    fs::remove_file(small.out().join("state.safetensors")).unwrap();
+    small.refused(
+        &["--model", "v"],
+        "holds a checkpoint; choose another --out",
+    );
+    assert!(before == weights() && small.report()["updates"] == 1);
+}
+
+#[test]
+fn what_was_not_measured_is_no_zero() {
+    let small = Small::new();
+    let mut recordings = recordings(&small.data.join("train.mcap"));
+    for recording in &mut recordings {
+        recording.wrench = Track::default();
+    }
+    write(&small.data.join("train.mcap"), &recordings);
+    // Of another length than those that are trained on, so that none is left.
+    let options = ["--steps", "8", "--split", "val"];
+    simulated(small.data.join("val.mcap"), 2, &options);
+    let output = small
+        .train(&["--model", "v", "--epochs", "1"])
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    let report = small.report();
+    assert_eq!(
+        [&report["val"], &report["contact_newtons"]],
+        [&Value::Null, &Value::Null]
+    );
+    assert_eq!(report["val_episodes"], 0);
+    assert!(
+        said.contains("4 episodes to train on, 0 for validation"),
+        "{said}"
+    );
+    // Why nothing is left is said.
+    fs::remove_dir_all(small.out()).unwrap();
+    small.refused(&["--model", "vh"], "lacks haptic, which model `vh` sees");
 }

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::entrants::Entrant;
 use super::ground::{odd, unsuited};
+use crate::command::note;
 use crate::data::{Dataset, Role};
 use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
@@ -87,7 +88,7 @@ impl Fit<'_> {
             let fault = |e: &Episode| odd(e).or_else(|| unsuited(&model.config, e));
             let sound = episode.and_then(|episode| fault(&episode).map_or(Ok(episode), Err));
             if let Err(why) = &sound {
-                bar.suspend(|| eprintln!("left out of the fit: {why}"));
+                bar.suspend(|| note(&format!("left out of the fit: {why}")));
             }
             Ok(sound.ok().map(Arc::new))
         });

@@ -7,6 +7,7 @@ use anyhow::{Context, bail};
 use super::entrants::{Entrant, Source};
 use super::scores::{Outcome, fault};
 use crate::cli::EvalArgs;
+use crate::command::note;
 use crate::command::sample;
 use crate::data::Dataset;
 use crate::episode::{Episode, EpisodeSource, Split};
@@ -151,12 +152,12 @@ fn wanted(
         .iter()
         .filter(|e| cut && e.about.training.seed.is_none())
     {
-        eprintln!(
+        note(&format!(
             "note: {} does not say by which seed it was trained; if that was on {}, episodes of this `{}` were trained on",
             entrant.path.display(),
             dataset.name(),
             split.name()
-        );
+        ));
     }
     for entrant in cutters.into_iter().skip(1) {
         if of_split(&splits(entrant)) != wanted {

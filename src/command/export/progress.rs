@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::command::note;
 use crate::export::drive::Onlooker;
 
 /// Names come from recordings, and a terminal would obey what is not to be read in them.
@@ -49,7 +50,7 @@ impl Onlooker for Progress {
 
     fn note(&mut self, text: &str) {
         let text = plain(text);
-        self.bar.suspend(|| eprintln!("poescope: {text}"));
+        self.bar.suspend(|| note(&format!("poescope: {text}")));
     }
 }
 

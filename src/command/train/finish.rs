@@ -63,6 +63,7 @@ pub fn write(
         .map(|((name, error), weight)| json!({ "expert": name, "error_at_mean": error, "weight": weight }))
         .collect();
     let epoch_updates = (sets.train().len() / config.training.batch).max(1);
+    let peaks = peaks(sets.train())?;
     let report = json!({
         "poescope": env!("CARGO_PKG_VERSION"),
         "command": state.origin.command,
@@ -79,9 +80,9 @@ pub fn write(
         "epochs": state.update as f64 / epoch_updates as f64,
         "minutes": state.elapsed.as_secs_f64() / 60.0,
         "error_terms": error_at_mean,
-        "val": validate(model, sets.val())?,
+        "val": validate(model, sets.val(), usize::MAX)?,
         "probe": probe,
-        "contact_newtons": contact_newtons(peaks(sets.train())?),
+        "contact_newtons": (!peaks.is_empty()).then(|| contact_newtons(peaks)),
         "metrics": METRICS,
     });
     let text = serde_json::to_string_pretty(&report)? + "\n";
@@ -111,14 +112,16 @@ fn fit_probe(model: &Model, sets: &Sets, folder: &Path) -> anyhow::Result<Value>
     }))
 }
 
-/// The largest force of each episode.
+/// The largest force of each episode in which one was recorded.
 fn peaks(train: Episodes) -> anyhow::Result<Vec<f32>> {
-    let peak = |i: usize| -> anyhow::Result<f32> {
+    let peak = |i: usize| -> anyhow::Result<Option<f32>> {
         let episode = train.get(i)?;
         let forces = (0..episode.steps()).filter_map(|t| episode.force_newtons(t));
-        Ok(forces.fold(0.0, f32::max))
+        Ok(forces.reduce(f32::max))
     };
-    (0..train.len()).into_par_iter().map(peak).collect()
+    let each = (0..train.len()).into_par_iter().map(peak);
+    let each: Vec<Option<f32>> = each.collect::<anyhow::Result<_>>()?;
+    Ok(each.into_iter().flatten().collect())
 }
 
 /// Fits the pose regressors on `train`; none with too few beliefs.

@@ -1,10 +1,13 @@
 //! Progress of a run on standard error: a bar in a terminal, a line an epoch elsewhere.
 
+use std::fmt::Write as _;
 use std::io::IsTerminal;
 
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::command::note;
 use crate::train::Progress;
+use crate::train::step::Losses;
 
 /// A bar, hidden where standard error is no terminal.
 pub fn bar() -> ProgressBar {
@@ -34,15 +37,21 @@ pub fn progress(bar: &ProgressBar, progress: &Progress) {
     }
     bar.set_position((progress.fraction * 1000.0) as u64);
     bar.set_message(line.clone());
-    if let Some(validation) = &progress.validation {
-        let psnr_db = &validation.psnr_db;
-        let mean = psnr_db.iter().sum::<f64>() / psnr_db.len().max(1) as f64;
-        let line = format!(
-            "{line}  | val vision {:.2} KL {:.2} open loop {mean:.2} dB",
-            validation.losses.vision, validation.losses.kl
-        );
+    if progress.epoch_ended {
+        let mut line = line;
+        match &progress.validation {
+            None => line += "  | no episode to validate on",
+            Some(validation) => {
+                let Losses { vision, kl, .. } = validation.losses;
+                // Writing to a string cannot fail.
+                let _ = write!(line, "  | val vision {vision:.2} KL {kl:.2}");
+                if let Some(mean) = validation.mean_psnr_db() {
+                    let _ = write!(line, " open loop {mean:.2} dB");
+                }
+            }
+        }
         if bar.is_hidden() {
-            eprintln!("{line}");
+            note(&line);
         } else {
             bar.println(line);
         }

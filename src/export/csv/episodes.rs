@@ -21,7 +21,7 @@ pub const KEYS: [(&str, &str); 19] = [
     ("flags", "oddities seen in the recording"),
     (
         "problem",
-        "why the model makes nothing of it; empty where it does",
+        "why the model makes nothing of it, or what of `--state` it refused; else empty",
     ),
     ("data_hash", "of the data"),
     ("model_hash", "of the model's files"),

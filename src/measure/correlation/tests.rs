@@ -112,6 +112,28 @@ fn a_shared_probe_residual_looks_like_correlation_until_it_is_taken_off() {
 }
 
 #[test]
+fn a_residual_that_takes_off_too_much_leaves_no_correlation() {
+    let errors = |signs: [f32; 4]| signs.map(|s| [s, s]).to_vec();
+    let [a, b, c] = [
+        [1.0, -1.0, 1.0, -1.0],
+        [1.0, 1.0, -1.0, -1.0],
+        [1.0, -1.0, -1.0, 1.0],
+    ]
+    .map(errors);
+    // Independent; two thirds of a variance less they would correlate by −2.
+    assert!(dependence(&[a.clone(), b.clone()]).is_some());
+    let residual = 2.0 / 3.0;
+    assert_eq!(
+        dependence_beyond(&[a.clone(), b.clone()], [residual; 3]),
+        None
+    );
+    // Each pair could have −0.67, but no three of them at once.
+    let residual = 0.4;
+    assert!(dependence_beyond(&[a.clone(), b.clone()], [residual; 3]).is_some());
+    assert_eq!(dependence_beyond(&[a, b, c], [residual; 3]), None);
+}
+
+#[test]
 fn what_cannot_be_compared_has_no_correlation() {
     let errors = vec![[0.1, 0.3], [0.2, -0.1], [0.4, 0.2]];
     let turned: Vec<[f32; 2]> = errors.iter().map(|[x, y]| [-x, -y]).collect();

@@ -150,6 +150,9 @@ impl Training {
         {
             return refuse(key, format!("must lie between 0 and {most}, is {value}"));
         }
+        if self.epochs == 0 {
+            return refuse("training.epochs", "must be 1 or more");
+        }
         if self.segment == 1 {
             return refuse("training.segment", "a segment has 2 beliefs or more");
         }

@@ -5,7 +5,7 @@
 //! ```
 //! A new damage reaches as far as the scope at the cursor says; what is changed afterwards keeps its steps, until `@`.
 
-use super::{Input, Taken, adjust, sensor};
+use super::{Action, Input, Taken, adjust, sensor};
 use crate::measure::corruption::{Corruption, Damage};
 use crate::modality::Modality;
 use crate::session::command::Command;
@@ -18,6 +18,10 @@ const ARROW: f32 = 0.125;
 
 impl Input {
     pub(super) fn corrupt(&mut self, key: &Key, snapshot: &Snapshot) -> Taken {
+        if key.name() == "9" {
+            let text = "the prior has no input; 9 switches it outside of this".to_owned();
+            return Taken::Action(Action::Explain { error: true, text });
+        }
         match sensor(key, snapshot) {
             Some(Ok(position)) => {
                 self.focus_expert(position);

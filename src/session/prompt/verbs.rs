@@ -230,13 +230,20 @@ fn model(text: &str, snapshot: &Snapshot) -> Option<usize> {
     }
 }
 
-/// An episode by its number from 1, else by its name.
+/// An episode by its name, which may be a number like `0007`; the second of one name is `name#2`; else by its number
+/// from 1.
 fn episode(text: &str, snapshot: &Snapshot) -> Option<Command> {
-    let index = match text.parse::<usize>() {
-        Ok(number) => number.checked_sub(1),
-        Err(_) => snapshot.table.rows.iter().position(|row| row.id == text),
+    let nth = |name: &str, n: usize| {
+        let mut rows = snapshot.table.rows.iter().enumerate();
+        rows.by_ref().filter(|(_, row)| row.id == name).nth(n)
     };
-    index.map(Command::SelectEpisode)
+    let repeated = || {
+        let (name, number) = text.rsplit_once('#')?;
+        nth(name, number.parse::<usize>().ok()?.checked_sub(1)?)
+    };
+    let named = nth(text, 0).or_else(repeated).map(|(index, _)| index);
+    let numbered = || text.parse::<usize>().ok()?.checked_sub(1);
+    named.or_else(numbered).map(Command::SelectEpisode)
 }
 
 fn alpha(text: &str, snapshot: &Snapshot) -> Option<Command> {

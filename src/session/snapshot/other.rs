@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
-use super::{FrameRow, PositionView, SignedFrame, StepPsnr, StripCell};
+use super::{Badge, FrameRow, PositionView, SignedFrame, StepPsnr, StripCell};
 
 /// Model B under A's cursor.
 #[derive(Clone, Debug, Serialize)]
@@ -21,6 +21,8 @@ pub struct OtherView {
     pub position: Option<PositionView>,
     /// PSNR of its frames.
     pub psnr_db: Arc<Vec<StepPsnr>>,
+    /// Whether it was trained on the switches, as far as it has their experts.
+    pub badge: Badge,
     /// Why it cannot be shown.
     pub fault: Option<String>,
 }

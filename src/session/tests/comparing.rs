@@ -33,6 +33,34 @@ fn the_next_model_stands_beside_the_first_with_the_same_cursor_and_switches() {
 }
 
 #[test]
+fn the_model_beside_says_what_it_was_not_trained_on_and_when_it_is_silent() {
+    let mut session = pair();
+    let badge = |snapshot: Snapshot| snapshot.other.unwrap().badge.clone();
+    assert_eq!(badge(run(&mut session, [])), Badge::Trained);
+    let off = run(&mut session, [ToggleExpert(0)]);
+    assert_eq!(off.badge, Badge::Trained, "any sensors will do");
+    let why = "J never trained; trained: V+J".to_owned();
+    assert_eq!(badge(off), Badge::Untrained(why));
+    // Only the other model has a joint expert; here touch and joints are on.
+    let silent = [
+        SelectModel(1),
+        ToggleExpert(1),
+        SelectModel(0),
+        CompareWith(1),
+        ToggleExpert(3),
+    ];
+    let shown = silent.map(|command| run(&mut session, [command]));
+    let fault = shown[4].other.as_ref().unwrap().fault.clone();
+    let fault = fault.unwrap_or_else(|| panic!("{}: {}", text(&shown[4]), shown[4].state));
+    assert!(fault.contains("without an active expert"), "{fault}");
+    // What it is repaired by, once it is looked at, does not stand in the way of all that was done before.
+    run(&mut session, [SelectModel(1)]);
+    let undone = run(&mut session, std::iter::repeat_n(Undo, 8));
+    assert!(undone.experts.iter().all(|view| view.alpha == 1.0));
+    assert_eq!(run(&mut session, [SelectModel(0)]).badge, Badge::Trained);
+}
+
+#[test]
 fn the_difference_is_of_what_is_shown() {
     let mut session = pair();
     let snapshot = run(&mut session, [SeekTo(8), ToggleExpert(0)]);

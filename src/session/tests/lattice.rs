@@ -70,6 +70,22 @@ fn a_model_without_a_product_has_no_lattice_and_no_set_to_enter() {
 }
 
 #[test]
+fn switches_that_are_no_set_are_none_of_the_cells() {
+    let mut session = session();
+    session.want(LATTICE);
+    let half = Temper {
+        expert: 0,
+        tenths: -5,
+    };
+    let here = [SeekTo(7), CycleScope, CycleScope, ToggleExpert(0)];
+    for switches in [vec![SeekTo(7), half], here.to_vec()] {
+        let lattice = run(&mut session, switches).lattice.unwrap();
+        assert!(lattice.cells.iter().all(|cell| !cell.current));
+        run(&mut session, [Undo]);
+    }
+}
+
+#[test]
 fn an_empty_set_is_refused() {
     let mut session = session();
     let before = session.snapshot().state;

@@ -89,11 +89,12 @@ impl Lattice {
         }))
     }
 
-    /// What every set believes at a step; `current` are the experts that are on there.
+    /// What every set believes at a step; `current` are the present switches, which are a set's where they are its own
+    /// at every step: a belief depends on those before it.
     pub fn at(
         &mut self,
         step: usize,
-        current: &[bool],
+        current: &Alphas,
         opened: &Opened,
         predictor: &dyn Predictor,
     ) -> Result<Option<LatticeView>, PredictError> {
@@ -129,7 +130,7 @@ impl Lattice {
             LatticeCell {
                 name: name(&experts, &set.active),
                 trained: is_trained(predictor.info(), &set.active),
-                current: set.active == current,
+                current: set.inferred.alphas == *current,
                 squared_error: compared
                     .and_then(|(frame, truth)| squared_error(frame, truth))
                     .map(|error| error as f32),

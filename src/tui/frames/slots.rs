@@ -15,7 +15,8 @@ use ratatui::style::Style;
 
 use crate::episode::Frame;
 use crate::modality::Modality;
-use crate::session::snapshot::{ErrorOf, FrameRow, SignedFrame, Snapshot, StepPsnr};
+use crate::session::model_key;
+use crate::session::snapshot::{Badge, ErrorOf, FrameRow, SignedFrame, Snapshot, StepPsnr};
 use crate::tui::compare::{Compare, wiped};
 use crate::tui::experts::{damage_badge, is_at};
 use crate::tui::face::Face;
@@ -88,14 +89,20 @@ pub fn slots(snapshot: &Snapshot, face: &Face) -> Vec<Slot> {
             None => one(&other.frames, snapshot, face),
         };
         let psnr = decibels(&other.psnr_db, snapshot.cursor, other.frames.error_of);
-        name_model(&mut b, "B", model_name(snapshot, other.model), psnr);
+        let mark = match other.badge {
+            Badge::Untrained(_) => "!",
+            Badge::Trained | Badge::NoProduct => "",
+        };
+        let name = format!("{}{mark}", model_key(&snapshot.models, other.model));
+        name_model(&mut b, "B", &name, psnr);
         b.style = strong().patch(face.depth.ink(SECOND));
         b.keep = true;
         b
     });
     if b.is_some() {
         let psnr = decibels(&snapshot.psnr_db, snapshot.cursor, row.error_of);
-        name_model(&mut a, "A", model_name(snapshot, snapshot.model), psnr);
+        let name = model_key(&snapshot.models, snapshot.model);
+        name_model(&mut a, "A", &name, psnr);
     }
     compare(&mut a, b.as_ref(), snapshot, face);
     slots.push(a);
@@ -111,10 +118,6 @@ fn name_model(slot: &mut Slot, letter: &str, model: &str, psnr: Option<String>) 
     let what = std::mem::replace(&mut slot.name, format!("{letter} {model}"));
     let what = if what == "prediction" { "pred" } else { &what };
     slot.notes = psnr.into_iter().chain([what.to_owned()]).collect();
-}
-
-fn model_name(snapshot: &Snapshot, model: usize) -> &str {
-    snapshot.models.get(model).map_or("", |model| &model.name)
 }
 
 /// The one image of a model: the prediction where there is one, else the belief.

@@ -25,6 +25,7 @@ use super::arrows::{Arrows, ghosts};
 use super::{at_step, dots, ellipses, marked, marks, masses, off, paths, window};
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
 use crate::modality::Expert;
+use crate::session::model_key;
 use crate::session::snapshot::{PositionView, Snapshot};
 
 /// Draws the plane with its legend.
@@ -168,8 +169,7 @@ impl Said {
             entry("(V)", dim(), "without V".to_owned());
         }
         if let Some(other) = &snapshot.other {
-            let model = snapshot.models.get(other.model);
-            let name = model.map_or("B", |model| &model.name);
+            let name = model_key(&snapshot.models, other.model);
             entry("╴·○", second, format!("{name} belief"));
             entry("· ◇", second, predicted.to_owned());
         }

@@ -21,6 +21,7 @@ use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{self, Entry, legend_below};
 use super::{ahead, cursor_ahead, labels};
+use crate::session::model_key;
 use crate::session::snapshot::{Snapshot, StepPsnr};
 
 /// One line of the plot.
@@ -112,8 +113,7 @@ fn names(snapshot: &Snapshot, columns: u16) -> Vec<String> {
     let prediction = if columns < 26 { short } else { full };
     let mut names = vec!["belief".to_owned(), prediction.to_owned()];
     if let Some(other) = &snapshot.other {
-        let model = snapshot.models.get(other.model);
-        let model = model.map_or("B", |model| &model.name);
+        let model = model_key(&snapshot.models, other.model);
         names.extend([format!("{model} belief"), prediction.to_owned()]);
     }
     names

@@ -115,6 +115,14 @@ fn the_badge_says_what_was_never_trained_and_what_was() {
 }
 
 #[test]
+fn a_key_over_the_help_closes_it_and_does_nothing_else() {
+    let mut app = with(three(), SMALL);
+    let snapshot = play(&mut app, "lll ? 1");
+    assert_eq!((alphas(&snapshot), app.face.help), ([1.0; 4].into(), None));
+    assert_eq!(alphas(&play(&mut app, "1")), [0.0, 1.0, 1.0, 1.0]);
+}
+
+#[test]
 fn a_set_of_the_lattice_is_entered() {
     let mut app = with(three(), LARGE);
     let snapshot = play(

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::Look;
 use crate::episode::Episode;
-use crate::measure::gaussian::Factor;
 use crate::session::worker::answer::{Answer, Request};
 use crate::session::worker::lattice::Lattice;
 use crate::session::worker::memo::RolloutKey;
@@ -42,11 +41,8 @@ impl Worker {
             return Ok(());
         };
         let step = request.cursor.max(predictor.info().frame_stack);
-        let active: Vec<bool> = inferred
-            .belief_at(step)
-            .map(|belief| inferred.factors(belief).iter().map(Factor::is_on).collect())
-            .unwrap_or_default();
-        answer.lattice = lattice.at(step, &active, opened, predictor)?.map(Arc::new);
+        let current = &inferred.alphas;
+        answer.lattice = lattice.at(step, current, opened, predictor)?.map(Arc::new);
         Ok(())
     }
 
