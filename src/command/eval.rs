@@ -119,8 +119,8 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         bar.inc(chunk.len() as u64);
     }
     bar.finish_and_clear();
-    // Where nothing is left, that is the error, and why.
-    if left_out.len() < own.len() {
+    // Where nothing is left to sum up, that is the error, and why.
+    if args.shard.is_some() || left_out.len() < own.len() {
         for why in &left_out {
             note(&format!("left out: {why}"));
         }

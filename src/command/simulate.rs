@@ -27,7 +27,8 @@ fn same(a: &Path, b: &Path) -> bool {
         let parent = path
             .parent()
             .filter(|parent| !parent.as_os_str().is_empty());
-        parent.unwrap_or(Path::new(".")).canonicalize().ok()
+        let parent = parent.unwrap_or(Path::new("."));
+        parent.canonicalize().unwrap_or_else(|_| parent.to_owned())
     };
     a.file_name() == b.file_name() && folder(a) == folder(b)
 }

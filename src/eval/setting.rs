@@ -62,29 +62,31 @@ impl Setting {
 
     /// α of every expert at each of so many beliefs, the prior last.
     pub fn alphas(&self, config: &Config, beliefs: usize) -> Alphas {
-        let mut alphas = Alphas::trained(beliefs, config.switches());
-        let experts = config.experts.iter().copied().chain([Expert::Prior]);
-        for (place, expert) in experts.enumerate() {
-            for t in self.tempered.iter().filter(|t| t.expert == expert) {
-                for belief in 0..beliefs {
-                    let step = belief + config.frame_stack;
-                    if step >= t.from && t.until.is_none_or(|until| step < until) {
-                        alphas.values[belief * alphas.experts + place] = t.alpha;
-                    }
-                }
-            }
+        let steps = (0..beliefs).map(|belief| belief + config.frame_stack);
+        Alphas {
+            experts: config.switches(),
+            values: steps.flat_map(|step| self.at(config, step)).collect(),
         }
-        alphas
+    }
+
+    /// α of every expert at a step, the prior last.
+    fn at(&self, config: &Config, step: usize) -> Vec<f32> {
+        let reaches = |t: &&Tempered| step >= t.from && t.until.is_none_or(|until| step < until);
+        let alpha = |expert: Expert| {
+            let own = self.tempered.iter().filter(|t| t.expert == expert);
+            own.filter(reaches).next_back().map_or(1.0, |t| t.alpha)
+        };
+        let experts = config.experts.iter().copied().chain([Expert::Prior]);
+        experts.map(alpha).collect()
     }
 
     /// Whether a belief would be left without any expert, in an episode that is long enough.
     pub fn empties(&self, config: &Config) -> bool {
-        // Behind the last change all beliefs are alike.
-        let changes = self.tempered.iter().map(|t| t.until.unwrap_or(t.from));
-        let beliefs = changes.max().unwrap_or(0) + 1;
-        let alphas = self.alphas(config, beliefs);
+        // Between two changes all beliefs are alike.
+        let changes = self.tempered.iter().flat_map(|t| [Some(t.from), t.until]);
+        let mut steps = changes.flatten().map(|step| step.max(config.frame_stack));
         // Without the prior as an expert a belief of no sensor is the prior all the same.
-        config.prior_expert && (0..beliefs).any(|i| alphas.row(i).iter().all(|&a| a == 0.0))
+        config.prior_expert && steps.any(|step| self.at(config, step).iter().all(|&a| a == 0.0))
     }
 
     /// The episode as it is seen.

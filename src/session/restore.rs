@@ -84,13 +84,18 @@ impl Session {
             self.table.rank_by(state.order);
         }
         self.take_steps(&state, steps, &mut complaints);
-        if !state.unknown.is_empty() {
-            let keys: Vec<&str> = state.unknown.iter().map(|(key, _)| key.as_str()).collect();
-            complaints.push(format!("kept without a meaning here: {}", keys.join(", ")));
-        }
+        let keys: Vec<&str> = state.unknown.iter().map(|(key, _)| key.as_str()).collect();
+        let kept = format!("kept without a meaning here: {}", keys.join(", "));
+        let is_known = keys.is_empty();
         self.unknown_keys = state.unknown;
-        if !complaints.is_empty() {
-            self.complain(complaints.join("; "));
+        match (complaints.is_empty(), is_known) {
+            (true, true) => {}
+            // A later version may have written it: nothing is wrong.
+            (true, false) => self.inform(kept),
+            (false, _) => {
+                complaints.extend((!is_known).then_some(kept));
+                self.complain(complaints.join("; "));
+            }
         }
     }
 

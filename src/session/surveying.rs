@@ -149,6 +149,7 @@ impl Session {
                 self.board = Some(Arc::new(BoardView {
                     episodes: board.episodes,
                     total: board.total,
+                    stale: true,
                     ..BoardView::clone(before)
                 }));
             }

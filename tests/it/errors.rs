@@ -230,3 +230,19 @@ fn a_model_of_other_data() {
     ];
     view(&sample(), &checkpoint.path, &words);
 }
+
+#[test]
+fn a_state_of_what_is_not_there_is_not_answered_for_something_else() {
+    for state in ["v=1;episode=nope;step=3", "v=1;model=nope", "nope"] {
+        complaint(
+            &["view", "--json", "--state", state],
+            &["--state: ", "nope"],
+        );
+    }
+    // What a later version may have written is no fault.
+    let known = poescope()
+        .args(["view", "--json", "--state", "v=1;step=3;lens=4"])
+        .output()
+        .unwrap();
+    assert!(known.status.success());
+}

@@ -349,7 +349,7 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
             "controls: a prediction from other",
         ),
         (
-            "alpha=vision:0@12-,joint:0@12-,prior:0@12-",
+            "alpha=vision:0@12-,joint:0@99999999999-,prior:0@12-",
             "leaves no expert of model `vhp` on",
         ),
         ("episode=x", "switches and damages nothing"),

@@ -13,7 +13,8 @@ use super::scores::{Head, Line, Outcome, Outcomes, Scores};
 #[derive(Default)]
 pub struct Kept {
     outcomes: Outcomes,
-    /// Episodes that were left out and are looked at again: their recording may have been mended since.
+    /// Episodes that were left out and are looked at again: a damaged chunk may have been mended since, which the data
+    /// hash does not know.
     again: BTreeSet<usize>,
     sink: Option<Sink>,
 }
@@ -43,8 +44,8 @@ impl Kept {
         let mut outcomes = Outcomes::new();
         for sibling in siblings(folder, &head.model.hash)? {
             if sibling != path {
-                let scores = admitted(&sibling, head)?.into_iter();
-                outcomes.extend(scores.flat_map(|scores| scores.outcomes));
+                let scores = admitted(&sibling, head)?;
+                take_in(&mut outcomes, scores.map(|scores| scores.outcomes));
             }
         }
         let mut sink = Sink {
@@ -70,7 +71,7 @@ impl Kept {
         let as_is = own.as_ref().is_none_or(|Scores { head: own, .. }| {
             own.model == head.model && own.episodes == head.episodes
         });
-        outcomes.extend(own.into_iter().flat_map(|own| own.outcomes));
+        take_in(&mut outcomes, own.map(|own| own.outcomes));
         if shard.is_none() && (!as_is || outcomes.len() > known) {
             sink.rewrite(&outcomes)?;
         }
@@ -103,6 +104,15 @@ impl Kept {
         }
         self.outcomes.insert(index, outcome);
         Ok(())
+    }
+}
+
+/// Adds outcomes to those of other files. What one run left out another may have scored since.
+fn take_in(outcomes: &mut Outcomes, others: Option<Outcomes>) {
+    for (index, outcome) in others.into_iter().flatten() {
+        if outcome.left_out().is_none() || !outcomes.contains_key(&index) {
+            outcomes.insert(index, outcome);
+        }
     }
 }
 

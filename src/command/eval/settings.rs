@@ -78,11 +78,13 @@ fn read(text: &str) -> anyhow::Result<Setting> {
             })
         })
         .collect();
+    // Of what is not damaged no noise is drawn.
+    let noise = !state.corruptions.is_empty();
     let counted = State {
         switches: state.switches,
         corruptions: state.corruptions.clone(),
         sampling: Sampling {
-            seed: state.sampling.seed,
+            seed: if noise { state.sampling.seed } else { 0 },
             ..Sampling::default()
         },
         ..State::default()

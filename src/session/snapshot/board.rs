@@ -16,6 +16,8 @@ pub struct BoardView {
     pub episodes: usize,
     /// Of so many.
     pub total: usize,
+    /// Whether the numbers are of before the last change, while those of now are being measured.
+    pub stale: bool,
     /// Why there is nothing to read, where there is nothing.
     pub why_not: Option<String>,
     /// The filtered belief at the last step of the context: one error an episode, R_p included.

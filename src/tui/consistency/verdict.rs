@@ -27,14 +27,15 @@ pub fn sentences(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face)
     let note = read.as_ref().map_or_else(
         |_| String::new(),
         |board| {
+            let of = format!(
+                "{}, {}/{} episodes",
+                board.split, board.episodes, board.total
+            );
+            if board.stale {
+                return format!("{of}; still of before the last change");
+            }
             let damaged = !snapshot.corruptions.is_empty();
-            format!(
-                "{}, {}/{} episodes{}",
-                board.split,
-                board.episodes,
-                board.total,
-                if damaged { ", none damaged" } else { "" }
-            )
+            format!("{of}{}", if damaged { ", none damaged" } else { "" })
         },
     );
     title(

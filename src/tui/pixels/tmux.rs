@@ -9,8 +9,8 @@ pub fn is_inside(variable: impl Fn(&str) -> Option<String>) -> bool {
     starts("TERM") || starts("TERM_PROGRAM") || set("TMUX")
 }
 
-/// Asks tmux to let sequences of this pane through, which it does not by itself. Where it refuses, or is on another
-/// machine, the terminal does not answer what it can do, and no images are sent.
+/// Asks tmux to let sequences of this pane through, which it does not by itself: what is copied, and images. Where it
+/// refuses, or is on another machine, the terminal does not answer what it can do, and no images are sent.
 pub fn let_through() {
     let _ = Command::new("tmux")
         .args(["set", "-p", "allow-passthrough", "on"])
