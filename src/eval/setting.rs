@@ -73,8 +73,8 @@ impl Setting {
     fn at(&self, config: &Config, step: usize) -> Vec<f32> {
         let reaches = |t: &&Tempered| step >= t.from && t.until.is_none_or(|until| step < until);
         let alpha = |expert: Expert| {
-            let own = self.tempered.iter().filter(|t| t.expert == expert);
-            own.filter(reaches).next_back().map_or(1.0, |t| t.alpha)
+            let mut own = self.tempered.iter().filter(|t| t.expert == expert);
+            own.rfind(reaches).map_or(1.0, |t| t.alpha)
         };
         let experts = config.experts.iter().copied().chain([Expert::Prior]);
         experts.map(alpha).collect()
