@@ -5,7 +5,6 @@ use anyhow::{Context, anyhow, bail};
 use crate::eval::score::{Candidate, Subject};
 use crate::eval::setting::{Setting, Tempered};
 use crate::modality::Expert;
-use crate::session::settings::Sampling;
 use crate::session::state::State;
 
 /// Every row.
@@ -78,17 +77,15 @@ fn read(text: &str) -> anyhow::Result<Setting> {
             })
         })
         .collect();
-    // Of what is not damaged no noise is drawn.
-    let noise = !state.corruptions.is_empty();
-    let counted = State {
+    let mut counted = State {
         switches: state.switches,
         corruptions: state.corruptions.clone(),
-        sampling: Sampling {
-            seed: if noise { state.sampling.seed } else { 0 },
-            ..Sampling::default()
-        },
         ..State::default()
     };
+    // Of what is not damaged no noise is drawn.
+    if !counted.corruptions.is_empty() {
+        counted.sampling.seed = state.sampling.seed;
+    }
     let counted = counted.to_string();
     let setting = Setting {
         name: counted
