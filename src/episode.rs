@@ -207,7 +207,16 @@ impl Episode {
 
     /// Time of step `t` since the first frame, in seconds.
     pub fn secs_at(&self, t: usize) -> f64 {
-        (self.steps_nanos[t] - self.steps_nanos[0]) as f64 * 1e-9
+        self.steps_nanos[t].saturating_sub(self.steps_nanos[0]) as f64 * 1e-9
+    }
+
+    /// What was odd about the recording, each with its topic and its time since the first frame.
+    pub fn oddities(&self) -> impl Iterator<Item = String> {
+        let first = self.steps_nanos.first().copied().unwrap_or_default();
+        self.flags.iter().map(move |flag| {
+            let secs = flag.stamp_nanos.saturating_sub(first) as f64 * 1e-9;
+            format!("{} at {secs:.2} s: {}", flag.topic, flag.what)
+        })
     }
 
     /// Median time between two images, in seconds; none with fewer than two.
@@ -215,7 +224,7 @@ impl Episode {
         let mut gaps: Vec<i64> = self
             .steps_nanos
             .windows(2)
-            .map(|pair| pair[1] - pair[0])
+            .map(|pair| pair[1].saturating_sub(pair[0]))
             .collect();
         gaps.sort_unstable();
         gaps.get(gaps.len() / 2).map(|&gap| gap as f64 * 1e-9)
@@ -223,14 +232,30 @@ impl Episode {
 
     /// Root-mean-square force over the window of step `t`, in newtons; the face's measure of contact.
     pub fn force_newtons(&self, t: usize) -> Option<f32> {
-        let window = self.layout.window;
-        let haptic = self.haptic.as_ref()?;
-        let samples = haptic.get(t * window * 6..(t + 1) * window * 6)?;
-        let sum: f32 = samples
+        let sum: f32 = self
+            .felt(t)?
             .chunks_exact(6)
             .map(|s| s[..3].iter().map(|f| f * f).sum::<f32>())
             .sum();
-        Some((sum / window as f32).sqrt())
+        Some((sum / self.layout.window as f32).sqrt())
+    }
+
+    /// Mean force of the pusher on the object over the window of step `t`: x and y in newtons, along the axes of the
+    /// table. A wrench says what the object does to the pusher, so this is the mean of fx and fy turned round.
+    pub fn push_newtons(&self, t: usize) -> Option<[f32; 2]> {
+        let samples = self.felt(t)?;
+        let mean = |channel: usize| {
+            let sum: f32 = samples.chunks_exact(6).map(|s| s[channel]).sum();
+            sum / self.layout.window as f32
+        };
+        Some([-mean(0), -mean(1)])
+    }
+
+    /// `(W, 6)`: the haptic window of step `t`.
+    fn felt(&self, t: usize) -> Option<&[f32]> {
+        let window = self.layout.window;
+        let haptic = self.haptic.as_ref()?;
+        haptic.get(t * window * 6..(t + 1) * window * 6)
     }
 }
 

@@ -12,7 +12,6 @@ pub mod contact;
 pub mod credit;
 pub mod markdown;
 pub mod prediction;
-pub mod protocol;
 pub mod quoted;
 pub mod regression;
 pub mod score;
@@ -23,4 +22,4 @@ pub mod table;
 pub mod tables;
 
 pub use self::prediction::open_loop_mse;
-pub use self::protocol::Protocol;
+pub use crate::measure::protocol::{self, Protocol};

@@ -82,6 +82,8 @@ pub struct ModelOrigin {
     pub source: String,
     /// The update of its training run, where that is known.
     pub update: Option<u64>,
+    /// Its config, as its `config.toml` says it; empty for one that has none.
+    pub config: String,
     /// How positions are read from its latent; none without a probe.
     pub probe: Option<ProbeOrigin>,
 }

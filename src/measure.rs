@@ -18,6 +18,7 @@ pub mod gaussian;
 pub mod innovation;
 pub mod leave_one_out;
 mod position;
+pub mod protocol;
 pub mod pull;
 pub mod samples;
 pub mod shapley;

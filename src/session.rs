@@ -222,6 +222,8 @@ impl Session {
             self.complain("no episode is open".to_owned());
         } else if self.pending.len() < MOST_PENDING {
             self.pending.push_back(Pending::Command(command));
+        } else {
+            self.complain("too much waits for the episode to be read; wait for it".to_owned());
         }
         self.settle(cursor);
     }
@@ -253,10 +255,12 @@ impl Session {
         self.shown.clone()
     }
 
-    /// When `update` has something to do again; none while nothing plays and nothing is computed.
+    /// When `update` has something to do again; none while nothing plays and nothing is
+    /// computed that would not wake the face.
     pub fn next_wake(&self) -> Option<Duration> {
         let secs = self.opened().map_or(&[][..], |opened| &opened.view.secs);
-        let computing = (self.is_busy() || self.survey_runs()).then_some(POLL);
+        let computing = (self.is_busy() || self.survey_runs()) && !self.shared.wakes();
+        let computing = computing.then_some(POLL);
         let playing = self.playback.next_step_in(secs);
         computing.into_iter().chain(playing).min()
     }
@@ -352,7 +356,7 @@ impl Session {
             return false;
         }
         let steps = answer.opened.as_ref().map(|opened| opened.steps());
-        let failed = answer.done;
+        let done = answer.done;
         let before = self.answer.take();
         self.answer = Some(match before {
             Some(before) if before.target == answer.target => answer.after(&before),
@@ -369,7 +373,7 @@ impl Session {
                     Pending::Restoration(restoration) => self.finish(*restoration),
                 }
             }
-        } else if failed {
+        } else if done {
             self.pending.clear();
         }
         true
@@ -464,6 +468,7 @@ fn waits_for_episode(command: &Command) -> bool {
         command,
         Command::TogglePlay
             | Command::Speed(_)
+            | Command::SetSpeed(_)
             | Command::CycleLoop
             | Command::Episode(_)
             | Command::SelectEpisode(_)

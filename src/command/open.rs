@@ -62,10 +62,13 @@ pub fn open(
 pub fn model(folder: &Path) -> anyhow::Result<Arc<dyn Predictor>> {
     let update = checkpoint::update_of(folder);
     let (model, probe, hash) = checkpoint::load_with_hash(folder)?;
+    // Without a report that can be read it is looked at all the same.
+    let training = Training::of(folder).unwrap_or_default();
     let origin = Origin {
         source: folder.display().to_string(),
         update,
         hash,
+        contact_newtons: training.contact_newtons,
     };
     Ok(Arc::new(Trained::new(model, probe, origin)?))
 }

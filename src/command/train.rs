@@ -78,6 +78,9 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     super::note(&format!("{}: {sets}", dataset.name()));
     let totals = Totals::of(sets.train())?;
     statistics::complete(&mut config, &totals);
+    if resumed.is_some() {
+        same_recipe(args, &config, &totals)?;
+    }
     let model = Model::new(config, origin.seed, &Device::Cpu)?;
     let mut state = match resumed {
         Some(_) => State::load(&model, &args.out)?,
@@ -137,7 +140,10 @@ fn lock(folder: &Path) -> anyhow::Result<File> {
 
 /// What was typed, but for the program's folder.
 fn command_line() -> String {
-    let typed: Vec<String> = std::env::args().skip(1).collect();
+    let typed = std::env::args_os().skip(1);
+    let typed: Vec<String> = typed
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
     format!("poescope {}", typed.join(" "))
 }
 
@@ -156,9 +162,14 @@ fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
             args.out.display()
         );
     }
+    asked_config(args, args.model.as_deref().unwrap_or("v-h-p"))
+}
+
+/// What --config, or --preset for `model`, and --set say together.
+fn asked_config(args: &TrainArgs, model: &str) -> anyhow::Result<Config> {
     let mut config = match &args.config {
         Some(path) => checkpoint::load_config(path)?,
-        None => named(args.model.as_deref().unwrap_or("v-h-p"), args.preset)?,
+        None => named(model, args.preset)?,
     };
     for assignment in &args.set {
         config = config
@@ -211,6 +222,23 @@ fn resume(args: &TrainArgs) -> anyhow::Result<(Config, Origin)> {
     }
     let origin = Origin::read(&args.out).with_context(nothing)?;
     Ok((config, origin))
+}
+
+/// A whole recipe that is named again has to be the one that goes on, whose config is `config`.
+fn same_recipe(args: &TrainArgs, config: &Config, totals: &Totals) -> anyhow::Result<()> {
+    let named = match (&args.config, args.preset) {
+        (Some(path), _) => format!("--config {}", path.display()),
+        (None, Some(preset)) => format!("--preset {}", preset.name()),
+        (None, None) => return Ok(()),
+    };
+    let mut asked = asked_config(args, &config.name)?;
+    statistics::complete(&mut asked, totals);
+    if asked != *config {
+        bail!(
+            "{named}, with --set as given, is not what this run was started with; leave it out, or start a new --out"
+        );
+    }
+    Ok(())
 }
 
 /// The origin to go on with: the run's own, but for a budget that is asked for anew.

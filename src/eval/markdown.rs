@@ -30,7 +30,22 @@ pub fn markdown(summary: &Summary) -> String {
     regression(&mut text, summary);
     credit(&mut text, summary);
     contact(&mut text, summary);
+    origin(&mut text, summary);
     text
+}
+
+/// What was scored, on what, and by what.
+fn origin(text: &mut String, summary: &Summary) {
+    head(text, "Made from", &["what", "seed", "hash of its files"]);
+    for model in &summary.models {
+        let seed = model.seed.map_or_else(String::new, |seed| seed.to_string());
+        row(text, &[model.label.clone(), seed, model.hash.clone()]);
+    }
+    // By its hash alone: what a dataset is called says nothing of what it holds.
+    let data = summary.scope.data_hash.clone();
+    row(text, &["the dataset".to_owned(), String::new(), data]);
+    let version = env!("CARGO_PKG_VERSION");
+    let _ = writeln!(text, "\npoescope {version}");
 }
 
 /// A title and the head of a table; the first column is text.

@@ -233,10 +233,6 @@ fn row(
     } else {
         None
     };
-    let means = [&beliefs.posterior.mean, &rolled.gaussians.mean];
-    if means.into_iter().flatten().any(|mean| !mean.is_finite()) {
-        candle_core::bail!("`{}` believes what is not a finite number", config.name);
-    }
     let probe = scorer.probe.as_ref();
     Ok(SubjectScores {
         frames,

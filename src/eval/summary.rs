@@ -7,7 +7,7 @@ use super::comparison::{Comparison, Means, Side, TRIVIAL, comparisons, once, sid
 use super::contact::{self, Aligned};
 use super::protocol::Protocol;
 use super::regression::{self, PoseErrors};
-use super::score::{Contest, EpisodeScores, FrameScores};
+use super::score::{Candidate, Contest, EpisodeScores, FrameScores};
 use super::spread::Spread;
 use crate::measure::bootstrap::{self, Interval};
 use crate::modality::Expert;
@@ -19,6 +19,8 @@ pub struct Quality {
     pub subject: String,
     /// What tells its recipe from the others'; empty where all have the same, and for the trivial predictors.
     pub recipe: String,
+    /// Its place among [`Summary::models`]; none for the trivial predictors.
+    pub model: Option<usize>,
     /// Root of the mean squared error per frame, a sum over pixels, over all frames.
     pub rmse: f64,
     /// Of each episode's mean over the horizon.
@@ -56,6 +58,17 @@ pub struct Seeds {
     pub psnr_db: Spread,
 }
 
+/// A model that was scored.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Scored {
+    /// Its label.
+    pub label: String,
+    /// Names what its files hold.
+    pub hash: String,
+    /// The seed of its training; none where its report does not say.
+    pub seed: Option<u64>,
+}
+
 /// What was scored.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Scope {
@@ -78,6 +91,8 @@ pub struct Summary {
     pub protocol: Protocol,
     /// On how many episodes.
     pub episodes: usize,
+    /// The models.
+    pub models: Vec<Scored>,
     /// One a row, the trivial predictors last.
     pub quality: Vec<Quality>,
     /// Groups of more than one seed.
@@ -116,6 +131,7 @@ pub fn summarise(
             .collect();
         quality.extend(rate(&subject.label, &scores).map(|quality| Quality {
             recipe: contest.candidate(subject).recipe.clone(),
+            model: Some(subject.candidate),
             ahead: ahead(place, all),
             ..quality
         }));
@@ -131,6 +147,7 @@ pub fn summarise(
         scope: scope.clone(),
         protocol: contest.protocol,
         episodes: all.len(),
+        models: contest.candidates.iter().map(scored).collect(),
         quality,
         seeds: sides.iter().filter_map(over_seeds).collect(),
         once: once(&sides),
@@ -141,6 +158,14 @@ pub fn summarise(
         contact_newtons,
         aligned,
     }))
+}
+
+fn scored(candidate: &Candidate) -> Scored {
+    Scored {
+        label: candidate.label.clone(),
+        hash: candidate.hash.clone(),
+        seed: candidate.seed,
+    }
 }
 
 /// How far the seeds of a side lie apart; none for a single one.
@@ -174,6 +199,7 @@ fn rate(subject: &str, scores: &[&FrameScores]) -> Option<Quality> {
     Some(Quality {
         subject: subject.to_owned(),
         recipe: String::new(),
+        model: None,
         rmse: whole(|s| &s.squared_error)?.mean.sqrt(),
         ssim: whole(|s| &s.ssim)?,
         psnr_db: whole(|s| &s.psnr_db)?,

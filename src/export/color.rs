@@ -1,19 +1,14 @@
 //! The colours of signed errors: blue where too dark, white where right, orange where too bright.
 
 use crate::episode::Frame;
-use crate::measure::frame::signed_difference;
+use crate::measure::frame::{self, error_rgb, signed_difference};
 
 /// Grey levels of error, of 255, that have the full colour; beyond them it stays.
-pub const ERROR_RANGE: f32 = 127.5;
-
-const BLUE: [u8; 3] = [33, 102, 172];
-const ORANGE: [u8; 3] = [230, 97, 1];
+pub const ERROR_RANGE: f32 = 255.0 * frame::ERROR_RANGE;
 
 /// The colour of a signed error in grey levels, -255 to 255.
 pub fn signed(error: i16) -> [u8; 3] {
-    let part = (f32::from(error) / ERROR_RANGE).clamp(-1.0, 1.0);
-    let end = if part < 0.0 { BLUE } else { ORANGE };
-    end.map(|channel| (255.0 + (f32::from(channel) - 255.0) * part.abs()).round() as u8)
+    error_rgb(f32::from(error) / ERROR_RANGE)
 }
 
 /// `frame` minus `truth` in colours, row major; none where the sizes differ.
@@ -29,8 +24,8 @@ mod tests {
     #[test]
     fn errors_of_both_signs_differ_and_saturate() {
         assert_eq!(signed(0), [255; 3]);
-        assert_eq!([signed(128), signed(255)], [ORANGE; 2]);
-        assert_eq!([signed(-128), signed(-255)], [BLUE; 2]);
+        assert_eq!([signed(128), signed(255)], [[230, 97, 1]; 2]);
+        assert_eq!([signed(-128), signed(-255)], [[33, 102, 172]; 2]);
         assert!(signed(10)[2] < signed(10)[0] && signed(-10)[0] < signed(-10)[2]);
     }
 }

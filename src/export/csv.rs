@@ -92,7 +92,7 @@ fn experts(run: &Run) -> Vec<Expert> {
 }
 
 /// What every row of steps begins with, and what it is.
-pub const STEP_KEYS: [(&str, &str); 10] = [
+pub const STEP_KEYS: [(&str, &str); 9] = [
     ("episode", "its name"),
     ("split", "`train`, `val` or `test`, where the data name one"),
     ("model", "its name; the second of the same name is `name#2`"),
@@ -104,10 +104,6 @@ pub const STEP_KEYS: [(&str, &str); 10] = [
     ("secs", "the same in s since the episode's first image"),
     ("context", "images seen before the rollout"),
     ("horizon", "images predicted"),
-    (
-        "trained",
-        "`true` where the model was trained on the switches, empty without a product",
-    ),
     ("active", "letters of the experts that are on: `VHPD`"),
 ];
 
@@ -144,7 +140,6 @@ fn row(step: &Step<'_>, experts: &[Expert]) -> Fields {
     fields.push(&step.secs().map_or_else(String::new, |s| format!("{s:?}")));
     fields.push(&at.context.to_string());
     fields.push(&at.horizon.to_string());
-    fields.push(&step.trained().map_or_else(String::new, |is| is.to_string()));
     let on = own.iter().enumerate().filter(|&(i, _)| step.alpha(i) > 0.0);
     fields.push(&on.map(|(_, expert)| expert.letter()).collect::<String>());
     for reading in READINGS {

@@ -194,6 +194,7 @@ pub fn provenance_of(source: Source<'_>, state: &State, split: Option<Split>) ->
         hash: infos[i].hash.clone(),
         source: infos[i].source.clone(),
         update: infos[i].update,
+        config: infos[i].config.clone(),
         probe: ProbeOrigin::of(model.as_ref()),
     };
     Provenance {

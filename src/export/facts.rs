@@ -43,6 +43,7 @@ impl Provenance {
                 ("hash", Some(model.hash.clone())),
                 ("source", Some(model.source.clone())),
                 ("update", update),
+                ("config", Some(model.config.clone())),
             ] {
                 facts.extend(value.map(|value| (format!("model.{topic}.{key}"), value)));
             }
@@ -64,6 +65,7 @@ mod tests {
             hash: "00".to_owned(),
             source: "runs/a".to_owned(),
             update: Some(7),
+            config: "latent = 16".to_owned(),
             probe: None,
         };
         let provenance = Provenance {
@@ -84,6 +86,7 @@ mod tests {
         let facts = provenance.facts();
         assert_eq!(facts["model.v_h_p_2.name"], "v-h-p#2");
         assert_eq!(facts["model.m2x.update"], "7");
+        assert_eq!(facts["model.v_h_p.config"], "latent = 16");
         assert_eq!(facts["seed"], "3");
         assert!(!facts.contains_key("split"));
     }

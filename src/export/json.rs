@@ -135,6 +135,7 @@ struct Origin<'a> {
     data_hash: &'a str,
     model_hash: &'a str,
     model_source: &'a str,
+    model_config: &'a str,
     seed: u64,
     state: &'a str,
 }
@@ -204,6 +205,7 @@ fn line<'a>(step: &Step<'a>) -> Line<'a> {
             data_hash: &run.provenance.data.hash,
             model_hash: model.map_or("", |model| &model.hash),
             model_source: model.map_or("", |model| &model.source),
+            model_config: model.map_or("", |model| &model.config),
             seed: run.provenance.seed,
             state: &at.state,
         },

@@ -126,6 +126,11 @@ impl Corruption {
         }
     }
 
+    /// Whether a step is among those that it damages.
+    pub fn acts_at(&self, step: usize) -> bool {
+        self.severity > 0.0 && step >= self.from && self.until.is_none_or(|until| step < until)
+    }
+
     /// The damaged ones of `steps` steps.
     fn range(&self, steps: usize) -> Range<usize> {
         let until = self.until.unwrap_or(steps).min(steps);

@@ -5,6 +5,19 @@ use crate::episode::Frame;
 /// Below this mean squared error two frames count as equal, so that PSNR stays finite (100 dB).
 pub const MSE_FLOOR: f64 = 1e-10;
 
+/// The signed error that has the full colour, as a part of the grey range; beyond it the colour stays.
+pub const ERROR_RANGE: f32 = 0.5;
+
+/// The colour of a signed error, a part of [`ERROR_RANGE`]: blue where too dark, white where right, orange where too
+/// bright.
+pub fn error_rgb(part: f32) -> [u8; 3] {
+    const BLUE: [u8; 3] = [33, 102, 172];
+    const ORANGE: [u8; 3] = [230, 97, 1];
+    let part = part.clamp(-1.0, 1.0);
+    let end = if part < 0.0 { BLUE } else { ORANGE };
+    end.map(|channel| (255.0 + (f32::from(channel) - 255.0) * part.abs()).round() as u8)
+}
+
 /// Sum of squared differences over all pixels; none where the sizes differ.
 pub fn squared_error(a: &Frame, b: &Frame) -> Option<f64> {
     if (a.width, a.height) != (b.width, b.height) || a.pixels.len() != b.pixels.len() {

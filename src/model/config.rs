@@ -134,22 +134,27 @@ impl Config {
             );
         }
         let sizes = [
-            ("frame_stack", self.frame_stack.saturating_add(1)),
             ("window", self.window),
             ("latent", self.latent),
             ("hidden", self.hidden),
             ("mixtures", self.mixtures),
             ("training.batch", self.training.batch),
-            (
-                "training.n_step_after",
-                self.training.n_step_after.len() + 1,
-            ),
         ];
         if let Some((key, size)) = sizes
             .into_iter()
             .find(|(_, size)| !(1..=MOST).contains(size))
         {
             return refuse(key, format!("must lie between 1 and {MOST}, is {size}"));
+        }
+        let from_none = [
+            ("frame_stack", self.frame_stack),
+            ("training.n_step_after", self.training.n_step_after.len()),
+        ];
+        if let Some((key, count)) = from_none.into_iter().find(|&(_, count)| count >= MOST) {
+            return refuse(
+                key,
+                format!("has {count} of them, where fewer than {MOST} are possible"),
+            );
         }
         // K matrices of Z by Z and Z by U, the largest there are, each read from a hidden layer.
         let largest = self.mixtures * self.latent * (self.latent + 2);

@@ -98,6 +98,7 @@ mod tests {
             frame_stack: 1,
             prior_expert,
             trained_sets: vec![ExpertSet::full(2)],
+            ..ModelInfo::default()
         }
     }
 

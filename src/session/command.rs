@@ -6,6 +6,7 @@ use super::settings::ControlEdit;
 use super::snapshot::table::Column;
 use crate::measure::corruption::Corruption;
 use crate::measure::failure::Order;
+use crate::measure::protocol::Protocol;
 use crate::modality::Modality;
 
 /// How far a switch reaches.
@@ -102,6 +103,8 @@ pub enum Command {
     },
     /// Next scope: episode, from here on, this frame.
     CycleScope,
+    /// This scope.
+    SetScope(Scope),
     /// Exactly these experts as trained, the others off, in the whole episode: the model's list, the prior last.
     UseSet(Vec<bool>),
     /// Damage what a modality's experts see, within the corruption's steps; none mends it.
@@ -115,6 +118,8 @@ pub enum Command {
     EditControls(Option<ControlEdit>),
     /// Show the mean path, or a sample.
     ToggleSamples,
+    /// Show a sample, or the mean path.
+    ShowSamples(bool),
     /// So many samples.
     SetSamples(usize),
     /// Seed of the samples' and the corruptions' noise.
@@ -125,15 +130,19 @@ pub enum Command {
     SetContext(usize),
     /// h: so many images are predicted.
     SetHorizon(usize),
+    /// Both of these, as the paper has them.
+    Predict(Protocol),
     /// Change c by so many.
     Context(i64),
     /// Change h by so many.
     Horizon(i64),
     /// Faster (positive) or slower (negative), by factors of two.
     Speed(i64),
+    /// As many times as fast as recorded: a power of two from 1/8 to 8.
+    SetSpeed(f32),
     /// Loop off, all, or the selection.
     CycleLoop,
-    /// Take back the last change of switches, scope, context, horizon or start.
+    /// Take back the last change of switches, scope, context, horizon, damage, controls or samples.
     Undo,
     /// Do it again.
     Redo,

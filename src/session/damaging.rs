@@ -103,10 +103,10 @@ impl Session {
         Ok(format!("{count} samples of the rollout"))
     }
 
-    pub(super) fn toggle_samples(&mut self) -> String {
+    pub(super) fn show_samples(&mut self, shown: bool) -> String {
         let sampling = &mut self.settings.sampling;
-        sampling.shown = !sampling.shown;
-        if sampling.shown {
+        sampling.shown = shown;
+        if shown {
             format!("predictions show a sample, seed {}", sampling.seed)
         } else {
             "predictions show the mean path".to_owned()

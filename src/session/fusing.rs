@@ -240,6 +240,7 @@ mod tests {
             frame_stack: 1,
             prior_expert,
             trained_sets: trained_sets.iter().map(|&bits| ExpertSet(bits)).collect(),
+            ..ModelInfo::default()
         }
     }
 

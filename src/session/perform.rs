@@ -9,6 +9,7 @@ use super::settings::Settings;
 use super::snapshot::ModelInfo;
 use super::switches::{Reach, Switches};
 use super::worker::Target;
+use crate::measure::protocol::Protocol;
 use crate::modality::Expert;
 
 impl Session {
@@ -61,15 +62,12 @@ impl Session {
                 session.settings.switches = Switches::default();
                 Ok("every expert as trained".to_owned())
             }),
-            Command::CycleScope => self.change(|session| {
-                let (scope, words) = match session.settings.scope {
-                    Scope::Episode => (Scope::Onward, "from the cursor on"),
-                    Scope::Onward => (Scope::Frame, "this step only"),
-                    Scope::Frame => (Scope::Episode, "the whole episode"),
-                };
-                session.settings.scope = scope;
-                Ok(format!("switches reach {words}"))
+            Command::CycleScope => self.reach(match self.settings.scope {
+                Scope::Episode => Scope::Onward,
+                Scope::Onward => Scope::Frame,
+                Scope::Frame => Scope::Episode,
             }),
+            Command::SetScope(scope) => self.reach(scope),
             Command::PredictHere => {
                 let context = self.playback.cursor + 1;
                 self.change(|session| session.set_context(context));
@@ -77,10 +75,23 @@ impl Session {
             Command::SetContext(context) => self.change(|session| session.set_context(context)),
             Command::Context(by) => self.change(|session| Ok(session.change_context(by))),
             Command::SetHorizon(horizon) => self.change(|session| session.set_horizon(horizon)),
+            Command::Predict(Protocol { context, horizon }) => self.change(|session| {
+                let seen = session.set_context(context)?;
+                Ok(format!("{seen}, {}", session.set_horizon(horizon)?))
+            }),
             Command::Horizon(by) => self.change(|session| Ok(session.change_horizon(by))),
             Command::Speed(by) => {
                 self.playback.change_speed(by);
                 self.inform(format!("speed {}", self.playback.speed()));
+            }
+            Command::SetSpeed(speed) => {
+                if self.playback.set_speed(speed) {
+                    self.inform(format!("speed {speed}"));
+                } else {
+                    self.complain(format!(
+                        "no speed {speed}; there are powers of two from 1/8 to 8"
+                    ));
+                }
             }
             Command::CycleLoop => {
                 let selected = self.playback.selection.is_some();
@@ -107,7 +118,13 @@ impl Session {
                 corruption,
             } => self.change(|session| session.corrupt(modality, corruption)),
             Command::EditControls(edit) => self.change(|session| session.edit_controls(edit)),
-            Command::ToggleSamples => self.change(|session| Ok(session.toggle_samples())),
+            Command::ToggleSamples => {
+                let shown = !self.settings.sampling.shown;
+                self.change(|session| Ok(session.show_samples(shown)));
+            }
+            Command::ShowSamples(shown) => {
+                self.change(|session| Ok(session.show_samples(shown)));
+            }
             Command::SetSamples(count) => self.change(|session| session.set_samples(count)),
             Command::SetSeed(seed) => self.change(|session| {
                 session.settings.sampling.seed = seed;
@@ -138,6 +155,19 @@ impl Session {
         if self.settings != before {
             self.history.record(before);
         }
+    }
+
+    /// Has switches reach this far from now on.
+    fn reach(&mut self, scope: Scope) {
+        let words = match scope {
+            Scope::Episode => "the whole episode",
+            Scope::Onward => "from the cursor on",
+            Scope::Frame => "this step only",
+        };
+        self.change(|session| {
+            session.settings.scope = scope;
+            Ok(format!("switches reach {words}"))
+        });
     }
 
     /// Goes to another model or episode; switches keep their experts by name.

@@ -1,5 +1,6 @@
 //! Between a session and its state string.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::planning::MOST_HORIZON;
@@ -202,33 +203,54 @@ fn take_bench(settings: &mut Settings, state: &State) {
     settings.sampling = state.sampling;
 }
 
-/// Names, each with a number where earlier ones are the same.
+/// Names, each with a number where earlier ones are the same: the next that makes a name nobody has.
 pub(super) fn keys<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let mut seen = std::collections::BTreeMap::new();
+    let names: Vec<&str> = names.collect();
+    let taken: BTreeSet<&str> = names.iter().copied().collect();
+    let mut seen = BTreeMap::new();
     let mut key = |name: &'a str| {
         let count: &mut usize = seen.entry(name).or_default();
         *count += 1;
-        match *count {
-            1 => name.to_owned(),
-            count => format!("{name}#{count}"),
+        if *count == 1 {
+            return name.to_owned();
+        }
+        loop {
+            let numbered = format!("{name}#{count}");
+            if !taken.contains(numbered.as_str()) {
+                return numbered;
+            }
+            *count += 1;
         }
     };
-    names.map(&mut key).collect()
+    names.iter().map(|name| key(name)).collect()
 }
 
 /// A model's name, with a number where an earlier one has the same.
 pub fn model_key(models: &[Arc<ModelInfo>], model: usize) -> String {
-    let Some(info) = models.get(model) else {
-        return String::new();
-    };
-    let earlier = models[..model].iter().filter(|m| m.name == info.name);
-    match earlier.count() {
-        0 => info.name.clone(),
-        earlier => format!("{}#{}", info.name, earlier + 1),
+    let mut keys = model_keys(models);
+    if model < keys.len() {
+        keys.swap_remove(model)
+    } else {
+        String::new()
     }
 }
 
 /// The model of a key.
 pub(super) fn model_named(models: &[Arc<ModelInfo>], key: &str) -> Option<usize> {
-    (0..models.len()).find(|&model| model_key(models, model) == key)
+    model_keys(models).iter().position(|named| named == key)
+}
+
+fn model_keys(models: &[Arc<ModelInfo>]) -> Vec<String> {
+    keys(models.iter().map(|info| info.name.as_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_numbered_key_is_nobody_s_name() {
+        let names = ["a", "a", "a#2", "a"];
+        assert_eq!(keys(names.into_iter()), ["a", "a#3", "a#2", "a#4"]);
+    }
 }

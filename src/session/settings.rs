@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::command::Scope;
 use super::switches::Switches;
 use crate::measure::corruption::Corruption;
+use crate::measure::protocol::Protocol;
 use crate::modality::Modality;
 
 /// So many samples at least, for a covariance, and at most: more tell nothing new and take their time.
@@ -135,8 +136,8 @@ impl Default for Settings {
         Self {
             switches: Switches::default(),
             scope: Scope::Episode,
-            context: 4,
-            horizon: 11,
+            context: Protocol::SYNTHETIC.context,
+            horizon: Protocol::SYNTHETIC.horizon,
             corruptions: BTreeMap::new(),
             controls: None,
             sampling: Sampling::default(),

@@ -107,7 +107,7 @@ pub struct Snapshot {
 }
 
 /// What a face says of a model.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ModelInfo {
     /// Its name: `v`, `vhp`, `v-h-p`.
     pub name: String,
@@ -127,6 +127,10 @@ pub struct ModelInfo {
     pub prior_expert: bool,
     /// The sets of sensor experts it was trained on, the prior always in.
     pub trained_sets: Vec<ExpertSet>,
+    /// Its config, as its `config.toml` says it; empty for a model that has none.
+    pub config: String,
+    /// The force that counts as contact in what it was trained on, in newtons (D25); none where it does not say.
+    pub contact_newtons: Option<f32>,
 }
 
 /// What a face shows of the episode itself; does not change with the cursor.
@@ -142,6 +146,9 @@ pub struct EpisodeView {
     pub secs: Vec<f64>,
     /// Root-mean-square force of each step's window in newtons; empty if not recorded.
     pub force_newtons: Vec<f32>,
+    /// Mean force of the pusher on the object over each step's window, as measured: x and y in newtons, along the axes
+    /// of the table, the opposite of the recorded force on the pusher. As many as `force_newtons`.
+    pub push_newtons: Vec<[f32; 2]>,
     /// What was odd about the recording, with topic and time.
     pub flags: Vec<String>,
     /// The step at or before which each of it was seen.

@@ -31,6 +31,7 @@ mod tests;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::ops::RangeInclusive;
 
 use super::command::{Looping, Scope};
 use super::settings::{ControlEdit, SAMPLES, Sampling};
@@ -84,6 +85,12 @@ pub struct State {
 }
 
 impl State {
+    /// First and last selected step, from 0, in order; none while the last one is not chosen.
+    pub fn selected(&self) -> Option<RangeInclusive<usize>> {
+        let (first, last) = self.selection?;
+        last.map(|last| first.min(last)..=first.max(last))
+    }
+
     /// Reads a state string. Each complaint names the key it is about; all other keys count.
     pub fn parse(text: &str) -> (Self, Vec<String>) {
         let mut state = Self::default();

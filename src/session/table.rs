@@ -108,7 +108,7 @@ fn shown(view: &TableView) -> Vec<usize> {
     let wanted = view.filter.to_lowercase();
     let matches = |row: &EpisodeRow| {
         let split = row.split.map_or("", Split::name);
-        row.id.to_lowercase().contains(&wanted) || split == wanted
+        row.id.to_lowercase().contains(&wanted) || split.contains(&wanted)
     };
     let mut shown: Vec<usize> = (0..view.rows.len())
         .filter(|&i| matches(&view.rows[i]))
@@ -226,6 +226,8 @@ mod tests {
         table.sort_by(Column::Id);
         assert_eq!(*table.view().shown, [1, 0, 2, 3]);
         table.filter("TEST".to_owned());
+        assert_eq!(table.view().shown.len(), 4);
+        table.filter("tes".to_owned());
         assert_eq!(table.view().shown.len(), 4);
         table.filter("c".to_owned());
         assert_eq!(*table.view().shown, [2]);

@@ -268,6 +268,8 @@ fn the_waker_is_called_when_something_is_ready() {
         let _ = sender.try_send(());
     }));
     session.apply(ToggleExpert(0));
+    // It sleeps until then.
+    assert_eq!(session.next_wake(), None);
     receiver.recv_timeout(LONG).unwrap();
 }
 

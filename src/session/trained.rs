@@ -20,6 +20,8 @@ pub struct Origin {
     pub update: Option<u64>,
     /// [`hash`](crate::model::checkpoint::hash) of its files; empty for one that has none.
     pub hash: String,
+    /// The force that counts as contact in its training set, in newtons; none where its report does not say.
+    pub contact_newtons: Option<f32>,
 }
 
 /// A model with its weights folded, and its position probe.
@@ -48,6 +50,8 @@ impl Trained {
             frame_stack: config.frame_stack,
             prior_expert: config.prior_expert,
             trained_sets: config.trained_sets(),
+            config: toml::to_string(config).map_err(refused)?,
+            contact_newtons: origin.contact_newtons,
         };
         let inspector = Inspector::new(model).map_err(refused)?;
         Ok(Self {

@@ -92,6 +92,12 @@ impl Shared {
         self.working.load(Ordering::Acquire) || self.requests.calls()
     }
 
+    /// Whether a face is woken when something has been computed.
+    pub fn wakes(&self) -> bool {
+        let waker = self.waker.lock().unwrap_or_else(PoisonError::into_inner);
+        waker.is_some()
+    }
+
     /// Has the face look at what is new.
     pub fn wake(&self) {
         let waker = self.waker.lock().unwrap_or_else(PoisonError::into_inner);

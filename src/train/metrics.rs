@@ -1,7 +1,7 @@
 //! What is logged of each epoch, a JSON object a line.
 
 use std::collections::BTreeMap;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
@@ -171,9 +171,15 @@ pub fn forget_after(folder: &Path, update: u64) -> Result<(), TrainError> {
         update: u64,
     }
     let path = folder.join(METRICS);
-    let Ok(text) = std::fs::read_to_string(&path) else {
-        return Ok(());
+    let bytes = match std::fs::read(&path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        read => read.map_err(|cause| CheckpointError::File {
+            path: path.clone(),
+            cause,
+        })?,
     };
+    // A torn line is no line, whatever its bytes are.
+    let text = String::from_utf8_lossy(&bytes);
     let kept = text
         .lines()
         .filter(|line| serde_json::from_str::<Line>(line).is_ok_and(|line| line.update <= update));

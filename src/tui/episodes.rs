@@ -23,7 +23,7 @@ use super::theme::{WARNING, dim, strong};
 use crate::measure::failure::Scores;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::table::{Column, EpisodeRow, EpisodeScore, TableView};
-use list::{COLUMNS, List};
+use list::List;
 
 /// Columns of the sparkline on a narrow screen.
 const SPARK: u16 = 10;
@@ -307,11 +307,11 @@ fn spark(buf: &mut Buffer, line: Rect, score: &EpisodeScore, places: &Places) {
 impl List {
     /// The column after or before the one that is sorted by; it stops at the ends.
     pub fn neighbour(sort: Column, by: isize) -> Column {
-        let at = COLUMNS
+        let at = Column::ALL
             .iter()
             .position(|&column| column == sort)
             .unwrap_or(0);
-        COLUMNS[at.saturating_add_signed(by).min(COLUMNS.len() - 1)]
+        Column::ALL[at.saturating_add_signed(by).min(Column::ALL.len() - 1)]
     }
 }
 

@@ -148,7 +148,7 @@ fn switch(alpha: f32) -> String {
 fn damage(expert: Expert, corruptions: &[(Modality, Corruption)], step: usize) -> Option<String> {
     let several = expert.modalities().len() > 1;
     let found = corruptions.iter().find(|(modality, corruption)| {
-        expert.modalities().contains(modality) && is_at(corruption, step)
+        expert.modalities().contains(modality) && corruption.acts_at(step)
     });
     found.map(|(modality, corruption)| {
         let letter = match modality {
@@ -168,13 +168,6 @@ pub fn damage_badge(corruption: &Corruption) -> String {
         damage => damage.name(),
     };
     format!("~{name} {:.1}", corruption.severity)
-}
-
-/// Whether a step is among those a corruption damages.
-pub fn is_at(corruption: &Corruption, step: usize) -> bool {
-    corruption.severity > 0.0
-        && step >= corruption.from
-        && corruption.until.is_none_or(|until| step < until)
 }
 
 fn percent(share: f32) -> String {

@@ -206,6 +206,9 @@ fn episode(steps: usize) -> EpisodeView {
         force_newtons: (0..steps)
             .map(|t| if t < 4 { 0.05 } else { 1.0 + 2.0 * noise(t) })
             .collect(),
+        push_newtons: (0..steps)
+            .map(|t| if t < 4 { [0.0; 2] } else { [1.0, 0.5] })
+            .collect(),
         flags: Vec::new(),
         flagged_steps: Vec::new(),
         missing: Vec::new(),
@@ -245,6 +248,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
             frame_stack: 1,
             prior_expert: true,
             trained_sets: vec![ExpertSet::full(3)],
+            ..ModelInfo::default()
         })],
         model: 0,
         episode: Some(Arc::new(episode(steps))),

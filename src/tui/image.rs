@@ -9,13 +9,8 @@ use ratatui::style::{Color, Style};
 use super::paint::put;
 use super::theme::{Depth, Rgb};
 use crate::episode::Frame;
+use crate::measure::frame::{ERROR_RANGE, error_rgb};
 use crate::session::snapshot::SignedFrame;
-
-/// The signed error that has the full colour, as a part of the grey range: beyond it colours saturate.
-pub const ERROR_RANGE: f32 = 0.5;
-
-const BLUE: Rgb = (33, 102, 172);
-const ORANGE: Rgb = (230, 97, 1);
 
 /// An image of numbers, row major.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,7 +127,7 @@ impl Raster {
         if !depth.has_shades() {
             let mean = lower.map_or(upper, |lower| f32::midpoint(upper, lower));
             // A sign that the character already shows; greys stay in the terminal's own foreground.
-            let end = if mean < 0.0 { BLUE } else { ORANGE };
+            let end = diverging(if mean < 0.0 { -1.0 } else { 1.0 });
             let character = self.character(mean);
             let style = if self.signed && character != ' ' {
                 depth.ink(end)
@@ -160,13 +155,7 @@ impl Raster {
 
 /// Blue below zero, white at zero, orange above.
 fn diverging(value: f32) -> Rgb {
-    let value = value.clamp(-1.0, 1.0);
-    let end = if value < 0.0 { BLUE } else { ORANGE };
-    let mix = |channel: u8| {
-        let channel = f32::from(channel);
-        (255.0 + (channel - 255.0) * value.abs()).round() as u8
-    };
-    (mix(end.0), mix(end.1), mix(end.2))
+    error_rgb(value).into()
 }
 
 /// For each of `target` pixels the source pixels it covers, with the length covered of each.
@@ -253,8 +242,8 @@ mod tests {
             values: vec![-255, 128],
         };
         let raster = Raster::from(&error);
-        assert_eq!(raster.rgb(raster.values[0]), BLUE);
-        assert_eq!(raster.rgb(raster.values[1]), ORANGE);
+        assert_eq!(raster.rgb(raster.values[0]), diverging(-1.0));
+        assert_eq!(raster.rgb(raster.values[1]), diverging(1.0));
     }
 
     #[test]

@@ -1,5 +1,19 @@
 //! A snapshot as lines of text for scripts and screen readers: one labelled fact a line, always in the same order,
 //! ASCII labels and units spelled out. What is not known is `none`; a label is left out only with its whole subject.
+//!
+//! ```text
+//! opened … told   what the overview shows
+//! fusion          readings at the cursor: NIS, KL, pairs, conflict, pulls, dimensions, NEES
+//! rollout, consistency, sets, response    of the views that ask for them
+//! finding         contacts, marks, selection, scores, failures
+//! ```
+
+mod consistency;
+mod finding;
+mod fusion;
+mod response;
+mod rollout;
+mod sets;
 
 use std::fmt::{Display, Write};
 
@@ -23,6 +37,12 @@ pub fn plain(snapshot: &Snapshot) -> String {
     changed(&mut report, snapshot);
     beside(&mut report, snapshot);
     told(&mut report, snapshot);
+    fusion::tell(&mut report, snapshot);
+    rollout::tell(&mut report, snapshot);
+    consistency::tell(&mut report, snapshot);
+    sets::tell(&mut report, snapshot);
+    response::tell(&mut report, snapshot);
+    finding::tell(&mut report, snapshot);
     report.0
 }
 
@@ -48,16 +68,28 @@ impl Report {
 
     /// Numbers with blanks between them.
     fn numbers(&mut self, label: &str, values: &[f32]) {
-        let text: Vec<String> = values
-            .iter()
-            .map(|value| {
-                if value.is_finite() {
-                    format!("{value:.3}")
-                } else {
-                    "none".to_owned()
-                }
-            })
-            .collect();
+        let text = values.iter().map(|value| {
+            if value.is_finite() {
+                format!("{value:.3}")
+            } else {
+                "none".to_owned()
+            }
+        });
+        self.list(label, text);
+    }
+
+    /// A place on the table, or a way on it.
+    fn place(&mut self, label: &str, metres: Option<[f32; 2]>) {
+        let centimetres = metres.map(|[x, y]| [x * 100.0, y * 100.0]);
+        self.numbers(
+            &format!("{label}, x y in cm"),
+            centimetres.as_ref().map_or(&[][..], |place| place),
+        );
+    }
+
+    /// Anything with blanks between.
+    fn list(&mut self, label: &str, values: impl Iterator<Item = impl Display>) {
+        let text: Vec<String> = values.map(|value| value.to_string()).collect();
         if text.is_empty() {
             self.fact(label, "none");
         } else {
@@ -150,17 +182,9 @@ fn position(report: &mut Report, position: Option<&PositionView>, cursor: usize)
         report.fact("position", "none");
         return;
     };
-    let centimetres = |[x, y]: [f32; 2]| [x * 100.0, y * 100.0];
-    let place = |report: &mut Report, label: &str, metres: Option<[f32; 2]>| {
-        let place = metres.map(centimetres);
-        report.numbers(
-            &format!("{label}, x y in cm"),
-            place.as_ref().map_or(&[][..], |place| place),
-        );
-    };
     let truth = position.truth.get(cursor).map(|pose| [pose.x, pose.y]);
-    place(report, "position truth", truth);
-    place(report, "position tip", position.tip.get(cursor).copied());
+    report.place("position truth", truth);
+    report.place("position tip", position.tip.get(cursor).copied());
     for (name, estimates, error) in [
         ("belief", &position.belief, position.belief_error_m),
         (
@@ -171,9 +195,9 @@ fn position(report: &mut Report, position: Option<&PositionView>, cursor: usize)
     ] {
         let estimate: Option<Estimate> = estimates.get(cursor).copied().flatten();
         let label = format!("position {name}");
-        place(report, &label, estimate.map(|it| [it.x, it.y]));
+        report.place(&label, estimate.map(|it| [it.x, it.y]));
         let sigma = estimate.map(|it| [it.covariance[0].sqrt(), it.covariance[2].sqrt()]);
-        place(report, &format!("{label} sigma"), sigma);
+        report.place(&format!("{label} sigma"), sigma);
         let error = error.map(|metres| metres * 100.0);
         report.number(&format!("{label} error"), error, "cm");
     }

@@ -15,13 +15,14 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 
 use super::face::Face;
-use super::image::{ERROR_RANGE, Raster};
+use super::image::Raster;
 use super::paint::{put, text, width};
 use super::predict::edited;
 use super::theme::{PREDICTION, dim, strong};
 use super::view::{Pane, View};
 use super::words;
 use crate::episode::Frame;
+use crate::measure::frame::ERROR_RANGE;
 use crate::session::snapshot::{Snapshot, StripCell};
 
 /// Columns of the labels.

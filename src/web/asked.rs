@@ -87,19 +87,11 @@ fn commands(element: &str, value: &Value, snapshot: &Snapshot) -> Option<Vec<Com
         ("episode", Value::Text(entry)) => Command::SelectEpisode(index(entry)?),
         ("model", Value::Text(entry)) => Command::SelectModel(index(entry)?),
         ("step", Value::Number(step)) => Command::SeekClamped(whole(*step).saturating_sub(1)),
-        ("speed", Value::Text(name)) => return speed(name, snapshot),
-        ("scope", Value::Text(name)) => return scope(name, snapshot),
+        ("speed", Value::Text(name)) => Command::SetSpeed(named(&SPEEDS, name)?),
+        ("scope", Value::Text(name)) => Command::SetScope(named(&SCOPES, name)?),
         ("context", Value::Number(context)) => Command::SetContext(whole(*context)),
         ("horizon", Value::Number(horizon)) => Command::SetHorizon(whole(*horizon)),
-        ("sampled", Value::Bool(on)) => {
-            let is_other = snapshot.sampling.shown != *on;
-            return Some(
-                is_other
-                    .then_some(Command::ToggleSamples)
-                    .into_iter()
-                    .collect(),
-            );
-        }
+        ("sampled", Value::Bool(on)) => Command::ShowSamples(*on),
         ("state", Value::Text(state)) => Command::Restore(state.clone()),
         (button, Value::Bool(true)) => pressed(button)?,
         _ => return None,
@@ -137,31 +129,10 @@ fn place(expert: &str, snapshot: &Snapshot) -> Option<usize> {
         .position(|view| view.expert.name() == expert)
 }
 
-/// As many times faster or slower as there are factors of two between.
-fn speed(name: &str, snapshot: &Snapshot) -> Option<Vec<Command>> {
-    let place = |speed: f32| {
-        SPEEDS
-            .iter()
-            .position(|(_, known)| known.total_cmp(&speed).is_eq())
-    };
-    let wanted = SPEEDS.iter().position(|(known, _)| *known == name)?;
-    let by = wanted as i64 - place(snapshot.speed)? as i64;
-    Some(
-        (by != 0)
-            .then_some(Command::Speed(by))
-            .into_iter()
-            .collect(),
-    )
-}
-
-/// As many scopes on as there are between.
-fn scope(name: &str, snapshot: &Snapshot) -> Option<Vec<Command>> {
-    let wanted = SCOPES.iter().position(|(known, _)| *known == name)?;
-    let now = SCOPES
-        .iter()
-        .position(|(_, scope)| *scope == snapshot.scope)?;
-    let by = (wanted + SCOPES.len() - now) % SCOPES.len();
-    Some(vec![Command::CycleScope; by])
+/// What stands beside a name.
+fn named<T: Copy>(table: &[(&str, T)], name: &str) -> Option<T> {
+    let found = table.iter().find(|(known, _)| *known == name);
+    found.map(|&(_, value)| value)
 }
 
 /// A new damage reaches as far as the scope at the cursor says; another kind keeps its steps and its severity.
@@ -287,8 +258,8 @@ mod tests {
         let mut session = session();
         // What both have before them.
         let snapshot = session.snapshot();
-        let mut ask = |on: bool| {
-            let asked = of_control("poescope-switch-vision", &Value::Bool(on), &snapshot);
+        let mut ask = |control: &str, value: &Value| {
+            let asked = of_control(control, value, &snapshot);
             let Asked::Commands(commands) = asked else {
                 panic!("{asked:?}");
             };
@@ -296,10 +267,17 @@ mod tests {
                 session.apply(command);
             }
             assert!(session.wait_idle(Duration::from_secs(20)));
-            session.snapshot().experts[0].alpha
+            session.snapshot()
         };
-        let alphas = [ask(false), ask(false), ask(true), ask(true)];
+        let mut alpha = |on| ask("poescope-switch-vision", &Value::Bool(on)).experts[0].alpha;
+        let alphas = [alpha(false), alpha(false), alpha(true), alpha(true)];
         assert_eq!(format!("{alphas:?}"), "[0.0, 0.0, 1.0, 1.0]");
+        for _ in 0..2 {
+            let shown = ask("poescope-sampled", &Value::Bool(true)).sampling.shown;
+            let speed = ask("poescope-speed", &text("4×")).speed;
+            let scope = ask("poescope-scope", &text("from here on")).scope;
+            assert_eq!((shown, speed, scope), (true, 4.0, Scope::Onward));
+        }
     }
 
     #[test]

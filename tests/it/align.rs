@@ -3,6 +3,7 @@
 
 use poescope::data::{DataError, align};
 use poescope::episode::{Frame, Layout, Recording, Track};
+use poescope::sim::{Params, simulate};
 use proptest::collection::vec;
 use proptest::prelude::*;
 
@@ -303,4 +304,25 @@ fn a_value_that_is_no_number_is_flagged() {
         (flags[0].topic.as_str(), flags[0].stamp_nanos),
         ("/wrench", sensed[7])
     );
+}
+
+/// Force and displacement have the same axes, and the force that is recorded is the one on the pusher.
+#[test]
+fn what_the_pusher_does_points_where_the_object_goes() {
+    let mut pushes = 0;
+    for index in 0..3 {
+        let recording = simulate(&Params::default(), 5, index);
+        let episode = align(&recording, Layout::default()).unwrap();
+        let object = episode.object.as_ref().unwrap();
+        for (t, pair) in (1..).zip(object.windows(2)) {
+            let [fx, fy] = episode.push_newtons(t).unwrap();
+            let (dx, dy) = (pair[1].x - pair[0].x, pair[1].y - pair[0].y);
+            let size = fx.hypot(fy) * dx.hypot(dy);
+            if fx.hypot(fy) > 1.0 && dx.hypot(dy) > 0.005 {
+                pushes += 1;
+                assert!(fx * dx + fy * dy > 0.5 * size, "episode {index}, step {t}");
+            }
+        }
+    }
+    assert!(pushes > 5, "{pushes} steps with a push");
 }

@@ -277,6 +277,15 @@ fn tables_say_the_same_in_every_format() {
     let hash = report["scope"]["data_hash"].as_str().unwrap();
     assert_eq!(row[1..5], ["test.mcap", hash, "test", "20"]);
     assert!((row[5].parse::<f64>().unwrap() - rmse).abs() < 1e-9);
+    let [ours, _, context, horizon] = &row[row.len() - 4..] else {
+        panic!("{row:?}");
+    };
+    assert_eq!((context.as_str(), horizon.as_str()), ("4", "5"));
+    // The tables as text say the same of where they come from.
+    let tables = fs::read_to_string(out.join("tables.md")).unwrap();
+    for hash in [ours.as_str(), hash] {
+        assert!(hash.len() == 16 && tables.contains(&format!("| {hash} |")));
+    }
     // Around contact the experts' shares of a belief add up to one.
     let contact = csv(&out, "contact");
     let after = contact

@@ -98,8 +98,8 @@ impl Scene {
         let (model, probe, hash) = checkpoint::load_with_hash(&sample("v-h-p")).unwrap();
         let origin = Origin {
             source: "sample".to_owned(),
-            update: None,
             hash,
+            ..Origin::default()
         };
         let model: Arc<dyn Predictor> = Arc::new(Trained::new(model, probe, origin).unwrap());
         let sent = Arc::new(Mutex::new(Vec::new()));
@@ -172,6 +172,7 @@ fn each_step_is_sent_once_and_other_switches_begin_another_recording() {
     // Back again there is nothing new to send.
     scene.after(Ask::Step(-1));
     scene.after(Ask::ToggleMark);
+    scene.after(Ask::CycleFailureOrder);
     assert_eq!(scene.believed(), [[0_i64; 0]]);
     scene.after(Ask::ToggleExpert(0));
     assert_eq!(scene.believed(), [vec![], vec![5_i64]]);

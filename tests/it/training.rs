@@ -42,13 +42,18 @@ fn an_episode_without_a_sensor_is_left_out_and_a_resumed_run_keeps_its_config() 
 
     // The same command again is no other run.
     answer(&mut train(&["--resume"]));
+    answer(&mut train(&["--resume", "--preset", "fast"]));
+    let config = out.join("config.toml").display().to_string();
+    answer(&mut train(&["--resume", "--config", &config]));
     let rate = "training.learning_rate=0.0001";
-    let output = train(&["--resume", "--set", rate]).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(
-        !output.status.success() && said.contains("is not what this run was started with"),
-        "{said}"
-    );
+    for other in [["--set", rate], ["--preset", "released"]] {
+        let output = train(&["--resume"]).args(other).output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            !output.status.success() && said.contains("is not what this run was started with"),
+            "{said}"
+        );
+    }
 }
 
 /// Episodes of six images, and a training of one update on them.

@@ -37,10 +37,15 @@ export const TERMS = {
     formula: "ΔH_{i} = ½ Σ_{d} ln(T*_{d} ⁄ T*_{−i,d})",
     text: "Entropy in nats that the expert removes when it comes last. The order matters: these do not add up.",
   },
-  nis: {
-    title: "NIS against the prediction",
-    formula: "ν_{i}ᵀ (Σ_{i}⁄α_{i} + S_{0})^{−1} ν_{i},  ν_{i} = μ_{i} − μ_{0}",
-    text: "About the number of active dimensions if the expert and the prediction are as sure as they should be. Far above: one of them claims too much.",
+  nisHead: {
+    title: "NIS against the head",
+    formula: "ν_{i}ᵀ (Σ_{i}⁄α_{i} + Σ_{0})^{−1} ν_{i},  ν_{i} = μ_{i} − μ_{0}",
+    text: "The sensor against the prediction with the head's own spread. Not calibrated: the head states the noise of one step and does not carry the last belief's spread along, so this reads too high even where the model is right. ▲ and ▼ go by the bounds of the one beside it.",
+  },
+  nisPropagated: {
+    title: "NIS against A P Aᵀ + Q",
+    formula: "ν_{i}ᵀ (Σ_{i}⁄α_{i} + A P Aᵀ + Q)^{−1} ν_{i}",
+    text: "The same against a prediction that carries the last belief's spread along. χ² with as many degrees of freedom as there are active dimensions, so about that number if sensor and prediction are as sure as they should be. 95 % lie within the bounds: ▲ above them one of the two claims too much, ▼ below them too little. No bounds where α is neither 0 nor 1.",
   },
   pull: {
     title: "Pull",
@@ -93,7 +98,7 @@ export const TERMS = {
   },
   ellipse: {
     title: "The table",
-    text: "The plate as recorded, and pale where it is predicted. Around the belief: the solid ellipse holds one σ, 39 % of the mass in a plane, the dashed one 95 %. Arrows with letters are the sensors' pulls, one after the other; the red one is the contact force. A click on the path goes there.",
+    text: "The plate as recorded, and pale where it is predicted. Around the belief: the solid ellipse holds one σ, 39 % of the mass in a plane, the dashed one 95 %. Arrows with letters are the sensors' pulls, one after the other; the red one is the force of the tip on the plate as measured, 1 cm a newton. A click on the path goes there.",
   },
   damage: {
     title: "Damaged input",

@@ -2,7 +2,7 @@
 import "uplot/dist/uPlot.min.css";
 import { App } from "./app";
 import { Client } from "./client";
-import { websocketUrl } from "./protocol/address";
+import { serverHost, websocketUrl } from "./protocol/address";
 import { Connection } from "./protocol/connection";
 import { startTheme } from "./theme";
 import { keepToken, stateOf, urlOfState } from "./url";
@@ -32,6 +32,10 @@ const connection = new Connection(
     },
     status: (status) => app.status(status),
   },
-  () => fetch(".", { method: "HEAD", cache: "no-store" }).then((answer) => answer.ok),
+  // Only the page's own server can be asked whether it is there at all.
+  () =>
+    serverHost(page) === location.host
+      ? fetch(".", { method: "HEAD", cache: "no-store" }).then((answer) => answer.ok)
+      : Promise.resolve(false),
 );
 connection.connect();

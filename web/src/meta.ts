@@ -42,7 +42,6 @@ export interface Meta {
   experts: ExpertMeta[];
   /** False: the dimension carries nothing. Empty where that is not known. */
   active: boolean[];
-  surprise_nats: number | null;
   badge: { kind: "trained" | "untrained" | "no-product"; text: string };
   error_of: "belief" | "prediction";
   position_error_cm: { belief: number | null; prediction: number | null } | null;
@@ -69,15 +68,34 @@ export interface ExpertMeta {
   /** The block character whose density means the same without colour. */
   fill: string;
   alpha: number;
+  /** Whether its input is damaged at the cursor. */
+  damaged: boolean;
   switchable: boolean;
   /** Of each latent dimension, from 0 to 1. */
   share: (number | null)[];
   share_mean: number | null;
   share_position: number | null;
   information_nats: number | null;
-  fused_nats: number | null;
-  nis: number | null;
+  /** Against the prediction; nothing for the prior, and where the expert is off. */
+  nis: NisMeta | null;
   pull_cm: [number, number] | null;
+}
+
+/** NIS of one sensor, over the active dimensions. */
+export interface NisMeta {
+  /** Against the head's own spread: not calibrated. */
+  head: number;
+  /** Against A P Aᵀ + Q; nothing where that is not known. */
+  propagated: number | null;
+  /** Degrees of freedom: the active dimensions. */
+  dof: number;
+  /** Where 95 % of well-specified sensors lie; nothing where α is neither 0 nor 1. */
+  bounds: Bounds | null;
+}
+
+export interface Bounds {
+  low: number;
+  high: number;
 }
 
 /** One line of the table of keys. */

@@ -185,7 +185,6 @@ pub fn unsuited(config: &Config, episode: &Episode) -> Option<String> {
 
 /// Why an episode says nothing about a model: what was odd when it was recorded, as training has it.
 pub fn odd(episode: &Episode) -> Option<String> {
-    let flag = episode.flags.first()?;
-    let id = &episode.meta.id;
-    Some(format!("episode `{id}`: {}: {}", flag.topic, flag.what))
+    let odd = episode.oddities().next()?;
+    Some(format!("episode `{}`: {odd}", episode.meta.id))
 }

@@ -72,8 +72,5 @@ pub(super) fn steps(args: &ExportArgs, state: Option<&State>) -> Option<RangeInc
     if args.split.is_some() || !args.episode.is_empty() {
         return None;
     }
-    match state?.selection? {
-        (first, Some(last)) => Some(first.min(last)..=first.max(last)),
-        (_, None) => None,
-    }
+    state?.selected()
 }

@@ -66,8 +66,8 @@ impl Sets {
                     continue;
                 }
             };
-            if let Some(flag) = episode.flags.first() {
-                leave_out(format!("{}: {}", flag.topic, flag.what));
+            if let Some(odd) = episode.oddities().next() {
+                leave_out(odd);
                 continue;
             }
             let missing = missing(config, &episode);

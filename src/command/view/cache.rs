@@ -5,6 +5,9 @@ use std::path::PathBuf;
 
 use crate::session::survey::Cache;
 
+/// Files that are kept: a run that is followed leaves one for each of its checkpoints, and asks for none again.
+const MOST: usize = 100;
+
 /// A folder of files, one a key.
 #[derive(Debug)]
 pub struct Folder(PathBuf);
@@ -18,6 +21,20 @@ impl Folder {
             .filter(|path| path.is_absolute())
             .or_else(|| set("HOME").map(|home| PathBuf::from(home).join(".cache")));
         base.map(|base| Self(base.join("poescope")))
+    }
+
+    /// Removes the oldest files beyond so many.
+    fn keep(&self, most: usize) -> std::io::Result<()> {
+        let mut files = Vec::new();
+        for entry in fs::read_dir(&self.0)? {
+            let entry = entry?;
+            files.push((entry.metadata()?.modified()?, entry.path()));
+        }
+        files.sort();
+        let beyond = files.len().saturating_sub(most);
+        files[..beyond]
+            .iter()
+            .try_for_each(|(_, path)| fs::remove_file(path))
     }
 }
 
@@ -33,7 +50,7 @@ impl Cache for Folder {
             let mut file = tempfile::NamedTempFile::new_in(&self.0)?;
             std::io::Write::write_all(&mut file, bytes)?;
             file.persist(self.0.join(key))?;
-            Ok(())
+            self.keep(MOST)
         };
         // A full disk only costs the time to make it again.
         let _ = write();
@@ -54,5 +71,14 @@ mod tests {
         assert_eq!(cache.load("a.json").as_deref(), Some(&b"22"[..]));
         let count = fs::read_dir(folder.path().join("new")).map(Iterator::count);
         assert_eq!(count.ok(), Some(1));
+        let old = fs::File::options().write(true).open(cache.0.join("a.json"));
+        let dated = old.and_then(|file| file.set_modified(std::time::UNIX_EPOCH));
+        dated.expect("a file of long ago");
+        cache.store("b.json", b"3");
+        cache.keep(1).expect("one file is removed");
+        assert_eq!(
+            (cache.load("a.json"), cache.load("b.json")),
+            (None, Some(b"3".to_vec()))
+        );
     }
 }

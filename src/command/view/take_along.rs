@@ -38,12 +38,14 @@ pub(super) fn taker(session: &mut Session, opened: &Opened, folder: PathBuf) -> 
         if last.as_ref().is_some_and(Writing::goes_on) {
             return told(true, "the last export is still being written");
         }
+        let state = State::parse(&shown.state).0;
         let job = Job {
             dataset: Arc::clone(&dataset),
             models: on_screen(shown, &face.models()),
             plan: Plan {
                 episodes: vec![shown.episode_index],
-                state: Some(State::parse(&shown.state).0),
+                steps: state.selected(),
+                state: Some(state),
                 ..Plan::default()
             },
             out: free_name(&folder, shown),

@@ -3,7 +3,7 @@
 use super::column::{Placed, number, place, text, whole};
 use crate::eval::comparison::TRIVIAL;
 use crate::eval::score::{Contest, FrameScores};
-use crate::eval::summary::{Quality, Summary};
+use crate::eval::summary::{Quality, Scored, Summary};
 use crate::eval::table::Table;
 use crate::measure::bootstrap::Interval;
 
@@ -15,6 +15,8 @@ type HorizonRow<'a> = (&'a Quality, usize);
 pub(super) fn models(summary: &Summary) -> Table {
     let rows = &summary.quality;
     let scope = &summary.scope;
+    let protocol = summary.protocol;
+    let model = |q: &Quality| -> Option<&Scored> { summary.models.get(q.model?) };
     Table {
         name: "models",
         columns: vec![
@@ -51,6 +53,22 @@ pub(super) fn models(summary: &Summary) -> Table {
                 rows,
                 |q| Some(q.psnr_db.sd),
             ),
+            text(
+                "model_hash",
+                "names what its files hold; empty for a trivial predictor",
+                rows,
+                |q| model(q).map_or_else(String::new, |model| model.hash.clone()),
+            ),
+            number(
+                "seed",
+                "of its training, where its report says",
+                rows,
+                |q| Some(model(q)?.seed? as f64),
+            ),
+            whole("context", "images seen", rows, |_| protocol.context as i64),
+            whole("horizon", "images predicted", rows, |_| {
+                protocol.horizon as i64
+            }),
         ],
     }
 }

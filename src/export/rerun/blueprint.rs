@@ -116,8 +116,8 @@ fn series(models: &[Shown<'_>]) -> ContainerLike {
     let consistency: Vec<ContainerLike> = vec![
         plot("NIS against A P Aᵀ + Q (D8)", of_experts("nis_propagated")),
         plot(
-            "KL(belief ‖ expert), nats (D3)",
-            of_experts("overruled_nats"),
+            "KL(belief ‖ expert), part of the means, nats (D3)",
+            of_experts("overruled_mean_nats"),
         ),
         plot(
             "surprise, conflict (D2, D10)",

@@ -17,6 +17,7 @@ use crate::data::{DataError, Dataset};
 use crate::episode::{Episode, EpisodeSource, Recording, SourceError};
 use crate::export::drive::{Source, provenance_of};
 use crate::export::{Provenance, Run};
+use crate::measure::failure::Order;
 use crate::session::predict::Predictor;
 use crate::session::snapshot::Snapshot;
 use crate::session::state::State;
@@ -164,6 +165,7 @@ fn identity(snapshot: &Snapshot) -> String {
         looping: None,
         marks: BTreeSet::new(),
         selection: None,
+        order: Order::default(),
         unknown: Vec::new(),
         ..State::parse(&snapshot.state).0
     };

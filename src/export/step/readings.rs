@@ -25,6 +25,11 @@ const fn reading<F>(name: &'static str, says: &'static str, of: F) -> Reading<F>
 /// The numbers of a step.
 pub const READINGS: &[Reading<OfStep>] = &[
     reading(
+        "trained",
+        "1 where the model was trained on the switches, 0 where not; none without a product",
+        |step| Some(f32::from(u8::from(step.trained()?))),
+    ),
+    reading(
         "psnr_belief_db",
         "PSNR of the decoded belief, dB, data range 1",
         |step| step.at.psnr_db.get(step.at.cursor)?.belief,
@@ -192,12 +197,14 @@ pub const OF_EXPERT: &[Reading<OfExpert>] = &[
         |step, i| step.reading(i)?.mahalanobis,
     ),
     reading(
-        "overruled_nats",
-        "KL(belief ‖ expert), nats (D3)",
-        |step, i| {
-            let kl = step.reading(i)?.fused?;
-            Some(kl.mean + kl.spread)
-        },
+        "overruled_mean_nats",
+        "part of KL(belief ‖ expert) that is of the means: how far it was overruled, nats (D3)",
+        |step, i| Some(step.reading(i)?.fused?.mean),
+    ),
+    reading(
+        "overruled_spread_nats",
+        "the part of the spreads: how much vaguer it is than the belief, nats (D3)",
+        |step, i| Some(step.reading(i)?.fused?.spread),
     ),
     reading(
         "without_x_m",
@@ -234,12 +241,14 @@ pub const OF_SENSOR: &[Reading<OfExpert>] = &[
         |step, i| Some(step.reading(i)?.pull_m?[1]),
     ),
     reading(
-        "claim_nats",
-        "KL(expert ‖ prior), nats (D4)",
-        |step, i| {
-            let kl = step.reading(i)?.claim?;
-            Some(kl.mean + kl.spread)
-        },
+        "claim_mean_nats",
+        "part of KL(expert ‖ prior) that is of the means, nats (D4)",
+        |step, i| Some(step.reading(i)?.claim?.mean),
+    ),
+    reading(
+        "claim_spread_nats",
+        "the part of the spreads, nats (D4)",
+        |step, i| Some(step.reading(i)?.claim?.spread),
     ),
 ];
 

@@ -91,6 +91,7 @@ impl FakePredictor {
             frame_stack: 1,
             prior_expert,
             trained_sets,
+            ..ModelInfo::default()
         };
         Self {
             info,

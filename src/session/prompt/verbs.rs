@@ -3,10 +3,11 @@
 use super::bench::{controls, corrupt, corruptions, set};
 use super::{Choice, Verb, split, usage};
 use crate::measure::failure::Order;
+use crate::measure::protocol::Protocol;
 use crate::session::command::Command;
 use crate::session::input::Action;
 use crate::session::keymap::{FaceCommand, VIEWS};
-use crate::session::restore::{model_key, model_named};
+use crate::session::restore::{keys, model_key, model_named};
 use crate::session::settings::SAMPLES;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::table::Column;
@@ -87,6 +88,18 @@ pub(in crate::session) static VERBS: &[Verb] = &[
         keys: "C",
         choices: none,
         read: |rest, _| session(rest.parse().ok().map(Command::SetHorizon)),
+    },
+    Verb {
+        word: "preset",
+        arguments: "NAME",
+        help: "images seen and predicted as in the paper: 4 and 11, or 5 and 37",
+        keys: "c C",
+        choices: |_| Protocol::NAMED.map(|(name, _)| whole(name)).to_vec(),
+        read: |rest, _| {
+            let mut named = Protocol::NAMED.iter();
+            let found = named.find(|(name, _)| *name == rest);
+            session(found.map(|&(_, protocol)| Command::Predict(protocol)))
+        },
     },
     Verb {
         word: "samples",
@@ -233,15 +246,8 @@ fn model(text: &str, snapshot: &Snapshot) -> Option<usize> {
 /// An episode by its name, which may be a number like `0007`; the second of one name is `name#2`; else by its number
 /// from 1.
 fn episode(text: &str, snapshot: &Snapshot) -> Option<Command> {
-    let nth = |name: &str, n: usize| {
-        let mut rows = snapshot.table.rows.iter().enumerate();
-        rows.by_ref().filter(|(_, row)| row.id == name).nth(n)
-    };
-    let repeated = || {
-        let (name, number) = text.rsplit_once('#')?;
-        nth(name, number.parse::<usize>().ok()?.checked_sub(1)?)
-    };
-    let named = nth(text, 0).or_else(repeated).map(|(index, _)| index);
+    let ids = snapshot.table.rows.iter().map(|row| row.id.as_str());
+    let named = keys(ids).iter().position(|key| key == text);
     let numbered = || text.parse::<usize>().ok()?.checked_sub(1);
     named.or_else(numbered).map(Command::SelectEpisode)
 }

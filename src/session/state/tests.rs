@@ -52,7 +52,9 @@ fn the_bench_is_in_it() {
         (Some((3, Some(8))), Order::Nees)
     );
     assert_eq!(state.to_string(), text);
-    assert_eq!(State::parse("v=1;select=4-").0.selection, Some((3, None)));
+    assert_eq!(state.selected(), Some(3..=8));
+    let open = State::parse("v=1;select=4-").0;
+    assert_eq!((open.selection, open.selected()), (Some((3, None)), None));
     assert_eq!(
         State::parse("v=1;controls=from:6,rotate:360").0.controls,
         None

@@ -39,6 +39,8 @@ struct Awkward {
     missing: Vec<String>,
     /// How many latents each call decoded.
     decoded: Arc<Mutex<Vec<usize>>>,
+    /// Whether it decodes nothing.
+    blind: bool,
 }
 
 impl Predictor for Awkward {
@@ -84,6 +86,9 @@ impl Predictor for Awkward {
     }
     fn decode(&self, latents: &[f32]) -> Result<Vec<Frame>, PredictError> {
         self.decoded.lock().unwrap().push(latents.len() / 4);
+        if self.blind {
+            return Err(PredictError("it sees nothing".to_owned()));
+        }
         self.inner.decode(latents)
     }
     fn position(&self, _: &[f32], _: &[f32]) -> Option<Estimate> {
@@ -113,6 +118,7 @@ fn logged(missing: &[&str]) -> (Session, Arc<Door>, Arc<Mutex<Vec<usize>>>) {
         door: Arc::clone(&door),
         missing: missing.iter().map(|&role| role.to_owned()).collect(),
         decoded: Arc::clone(&decoded),
+        blind: false,
     };
     (session_of(vec![Arc::new(model)]), door, decoded)
 }
@@ -126,6 +132,24 @@ fn a_panic_is_told_and_the_session_lives_on() {
     assert_eq!(text(&broken), "the model broke down: haptic is off");
     let mended = run(&mut session, [ToggleExpert(1)]);
     assert!(mended.frames.belief.is_some());
+}
+
+#[test]
+fn a_model_beside_that_cannot_decode_leaves_the_first_one_alone() {
+    let beside = Awkward {
+        inner: FakePredictor::three(),
+        door: Arc::default(),
+        missing: Vec::new(),
+        decoded: Arc::default(),
+        blind: true,
+    };
+    let mut session = session_of(vec![Arc::new(FakePredictor::three()), Arc::new(beside)]);
+    let shown = run(&mut session, [SeekTo(4)]);
+    assert!(
+        shown.message.is_none() && shown.strip.iter().skip(1).all(|cell| cell.belief.is_some())
+    );
+    let fault = shown.other.as_ref().and_then(|other| other.fault.clone());
+    assert_eq!(fault.as_deref(), Some("it sees nothing"));
 }
 
 #[test]

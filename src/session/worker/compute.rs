@@ -55,8 +55,10 @@ impl Worker {
         self.check()?;
         self.read(request, &look, &opened, answer)?;
         let mut other = self.other(request, answer);
-        if let Some((look, opened)) = &other {
-            self.picture_other(look, &[request.cursor], opened, answer)?;
+        if let Some((look, opened)) = &other
+            && !self.picture_other(look, &[request.cursor], opened, answer)?
+        {
+            other = None;
         }
         self.publish(answer);
         self.check()?;
@@ -76,8 +78,10 @@ impl Worker {
             self.publish(answer);
             self.check()?;
             if left.is_empty() {
-                if let Some((look, opened)) = &mut other {
-                    self.picture_other(look, &left_of_other, opened, answer)?;
+                if let Some((look, opened)) = &other
+                    && !self.picture_other(look, &left_of_other, opened, answer)?
+                {
+                    other = None;
                 }
             } else {
                 self.picture(&look, &left, &opened, &mut answer.pictures)?;
@@ -263,22 +267,28 @@ impl Worker {
         }
     }
 
+    /// Decodes for the model beside; false where it cannot, which is said beside it and stops nothing.
     fn picture_other(
         &mut self,
         look: &Look,
         steps: &[usize],
         opened: &Opened,
         answer: &mut Answer,
-    ) -> Result<(), Stop> {
+    ) -> Result<bool, Stop> {
         let other = answer.other.take();
         let mut pictures = other.map(|other| other.pictures).unwrap_or_default();
-        self.picture(look, steps, opened, &mut pictures)?;
+        let fault = match self.picture(look, steps, opened, &mut pictures) {
+            Ok(()) => None,
+            Err(Stop::Fault(fault)) => Some(fault),
+            Err(interrupted) => return Err(interrupted),
+        };
+        let can = fault.is_none();
         answer.other = Some(Other {
             model: look.key.sight.target.model,
             pictures,
-            fault: None,
+            fault,
         });
-        Ok(())
+        Ok(can)
     }
 }
 

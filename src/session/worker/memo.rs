@@ -166,7 +166,9 @@ impl Memo {
         predictor: Option<&dyn Predictor>,
     ) -> Arc<Opened> {
         let missing = || predictor.map(|p| p.missing(episode)).unwrap_or_default();
-        let open = || Ok::<_, std::convert::Infallible>(Arc::new(Opened::new(episode, missing())));
+        let contact = predictor.and_then(|p| p.info().contact_newtons);
+        let opened = || Arc::new(Opened::new(episode, missing(), contact));
+        let open = || Ok::<_, std::convert::Infallible>(opened());
         match self.opened.get_or_try_insert(target, open) {
             Ok(opened) => Arc::clone(opened),
             Err(never) => match never {},

@@ -21,34 +21,30 @@ pub struct Opened {
     pub onsets: Vec<usize>,
 }
 
-/// The force at which contact counts as begun: a quarter of the episode's strongest, and no less than a sensor's noise.
-fn contact_newtons(force_newtons: &[f32]) -> f32 {
+/// The force at which contact counts as begun where no training set says it: a quarter of the episode's strongest, and
+/// no less than a sensor's noise.
+fn own_contact_newtons(force_newtons: &[f32]) -> f32 {
     const NOISE: f32 = 0.1;
     let strongest = force_newtons.iter().copied().fold(0.0, f32::max);
     (0.25 * strongest).max(NOISE)
 }
 
 impl Opened {
-    /// Shares the pieces of an episode; `missing` are the roles the model lacks.
-    pub fn new(episode: &Episode, missing: Vec<String>) -> Self {
+    /// Shares the pieces of an episode; `missing` are the roles the model lacks, `contact_newtons` is the force that
+    /// counts as contact in its training set (D25).
+    pub fn new(episode: &Episode, missing: Vec<String>, contact_newtons: Option<f32>) -> Self {
         let steps = episode.steps();
-        let first = episode.steps_nanos.first().copied().unwrap_or_default();
         let force_newtons: Vec<f32> = (0..steps).map_while(|t| episode.force_newtons(t)).collect();
-        let onsets = onsets(&force_newtons, contact_newtons(&force_newtons));
+        let threshold = contact_newtons.unwrap_or_else(|| own_contact_newtons(&force_newtons));
+        let onsets = onsets(&force_newtons, threshold);
         let view = EpisodeView {
             id: episode.meta.id.clone(),
             split: episode.meta.split,
             source: episode.meta.source.clone(),
             secs: (0..steps).map(|t| episode.secs_at(t)).collect(),
             force_newtons,
-            flags: episode
-                .flags
-                .iter()
-                .map(|flag| {
-                    let secs = flag.stamp_nanos.saturating_sub(first) as f64 * 1e-9;
-                    format!("{} at {secs:.2} s: {}", flag.topic, flag.what)
-                })
-                .collect(),
+            push_newtons: (0..steps).map_while(|t| episode.push_newtons(t)).collect(),
+            flags: episode.oddities().collect(),
             flagged_steps: episode
                 .flags
                 .iter()
@@ -73,5 +69,44 @@ impl Opened {
     /// T.
     pub fn steps(&self) -> usize {
         self.truth.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+    use super::*;
+    use crate::episode::{EpisodeSource, Layout};
+    use crate::session::fake::FakeSource;
+
+    #[test]
+    fn contact_is_what_it_was_in_the_training_set_where_that_says_it() {
+        let mut episode = FakeSource::new(1).load(0, Layout::default()).unwrap();
+        let window = episode.layout.window;
+        let haptic = episode.haptic.as_mut().unwrap();
+        haptic.fill(0.0);
+        haptic[3 * window * 6..][..window * 6].fill(2.0);
+        let onsets = |newtons| Opened::new(&episode, Vec::new(), newtons).onsets;
+        assert_eq!(onsets(None), [3]);
+        assert!(onsets(Some(5.0)).is_empty());
+    }
+
+    #[test]
+    fn a_push_is_the_mean_of_the_recorded_force_turned_round() {
+        let mut episode = FakeSource::new(1).load(0, Layout::default()).unwrap();
+        let window = episode.layout.window;
+        let haptic = episode.haptic.as_mut().unwrap();
+        let samples = haptic.chunks_exact_mut(6).skip(3 * window).take(window);
+        for (k, sample) in samples.enumerate() {
+            sample[..3].copy_from_slice(&[k as f32, -2.0, 9.0]);
+        }
+        let view = Opened::new(&episode, Vec::new(), None).view;
+        assert_eq!(view.push_newtons.len(), view.force_newtons.len());
+        // The mean of 0 to 31 is 15.5.
+        assert_eq!(view.push_newtons.get(3), Some(&[-15.5, 2.0]));
+        episode.haptic = None;
+        let without = Opened::new(&episode, Vec::new(), None).view;
+        assert!(without.push_newtons.is_empty());
     }
 }

@@ -5,19 +5,6 @@ use crate::session::keys::Key;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::table::{Column, TableView};
 
-/// The columns that can be sorted by, in the order of the digits.
-pub const COLUMNS: [Column; 9] = [
-    Column::Index,
-    Column::Id,
-    Column::Steps,
-    Column::Rmse,
-    Column::Distance,
-    Column::Gain,
-    Column::Nees,
-    Column::Conflict,
-    Column::Flags,
-];
-
 /// The open list.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct List {
@@ -70,8 +57,9 @@ impl List {
                 let index = table.shown.get(self.place(table)).copied();
                 return index.map_or(Asked::Nothing, Asked::Open);
             }
-            "<down>" | "j" => self.go(table, 1),
-            "<up>" | "k" => self.go(table, -1),
+            // A search leaves matches alone, so the next match is the next row.
+            "<down>" | "j" | "n" => self.go(table, 1),
+            "<up>" | "k" | "N" => self.go(table, -1),
             "<pagedown>" | "<s-down>" => self.go(table, 10),
             "<pageup>" | "<s-up>" => self.go(table, -10),
             "<home>" | "g" => self.go(table, isize::MIN),
@@ -82,7 +70,8 @@ impl List {
             ">" => return Self::sort(table, Self::neighbour(table.sort, 1)),
             "<c-c>" | "q" | "?" | "<f1>" => return Asked::Usual,
             _ => {
-                let column = digit.and_then(|digit| COLUMNS.get((digit as usize).checked_sub(1)?));
+                let column =
+                    digit.and_then(|digit| Column::ALL.get((digit as usize).checked_sub(1)?));
                 if let Some(&column) = column {
                     return Asked::Command(Command::SortBy(column));
                 }
@@ -148,7 +137,7 @@ mod tests {
     fn keys_move_open_sort_and_close() {
         let snapshot = fixture::snapshot(8, 16);
         let mut list = List::open(&snapshot);
-        pressed(&mut list, &snapshot, &["j", "<down>", "k"]);
+        pressed(&mut list, &snapshot, &["j", "<down>", "n", "k", "N"]);
         assert_eq!(list.selected, snapshot.episode_index + 1);
         let asked = pressed(
             &mut list,

@@ -14,13 +14,14 @@ use std::sync::Arc;
 use ratatui::style::Style;
 
 use crate::episode::Frame;
+use crate::measure::frame::ERROR_RANGE;
 use crate::modality::Modality;
 use crate::session::model_key;
 use crate::session::snapshot::{Badge, ErrorOf, FrameRow, SignedFrame, Snapshot, StepPsnr};
 use crate::tui::compare::{Compare, wiped};
-use crate::tui::experts::{damage_badge, is_at};
+use crate::tui::experts::damage_badge;
 use crate::tui::face::Face;
-use crate::tui::image::{ERROR_RANGE, Raster};
+use crate::tui::image::Raster;
 use crate::tui::theme::{PREDICTION, SECOND, WARNING, strong};
 use crate::tui::words;
 
@@ -173,7 +174,7 @@ fn prediction(row: &FrameRow, snapshot: &Snapshot, face: &Face) -> Slot {
 /// What the model sees instead of the truth.
 fn input(frame: &Arc<Frame>, snapshot: &Snapshot, face: &Face) -> Slot {
     let damage = snapshot.corruptions.iter().find(|(modality, corruption)| {
-        *modality == Modality::Vision && is_at(corruption, snapshot.cursor)
+        *modality == Modality::Vision && corruption.acts_at(snapshot.cursor)
     });
     Slot {
         name: "input".to_owned(),

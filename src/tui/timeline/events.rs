@@ -16,7 +16,6 @@ use super::super::paint::{put, right, text};
 use super::super::theme::{WARNING, dim, strong};
 use crate::modality::{Expert, Modality};
 use crate::session::snapshot::{EpisodeView, EventKind, Snapshot};
-use crate::tui::experts::is_at;
 
 /// The symbols of each step that has some, the most important first.
 pub fn symbols(snapshot: &Snapshot, step: usize) -> Vec<char> {
@@ -54,7 +53,7 @@ fn damaged(snapshot: &Snapshot, step: usize) -> impl Iterator<Item = Modality> {
     snapshot
         .corruptions
         .iter()
-        .filter_map(move |(modality, corruption)| is_at(corruption, step).then_some(*modality))
+        .filter_map(move |(modality, corruption)| corruption.acts_at(step).then_some(*modality))
 }
 
 /// The expert that looks at a modality alone: its letter and colour.

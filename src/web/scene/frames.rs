@@ -2,7 +2,7 @@
 
 use super::panel::Panel;
 use super::pictures::{Pace, Pictures};
-use super::png::ERROR_RANGE;
+use crate::measure::frame::ERROR_RANGE;
 use crate::session::snapshot::{ErrorOf, Snapshot};
 
 /// Adds the folder.

@@ -11,12 +11,13 @@ use crate::session::snapshot::{Badge, Snapshot};
 pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
     panel.markdown("status", status(snapshot));
     let listed = episodes(snapshot);
-    let here = snapshot.episode_index.to_string();
     let number = (snapshot.episode_index + 1).to_string();
     let present = listed
         .iter()
         .find(|entry| entry.split(' ').next() == Some(&number));
-    let present = present.cloned().unwrap_or(here);
+    let present = present
+        .cloned()
+        .unwrap_or_else(|| entry(snapshot.episode_index, ""));
     panel.dropdown("episode", ("Episode", "Keys: [ and ]"), &present, listed);
     let models = snapshot.models.iter().enumerate();
     let models: Vec<String> = models

@@ -6,7 +6,6 @@ use super::experts::switchable;
 use super::head::steps;
 use super::panel::Panel;
 use crate::episode::Split;
-use crate::measure::divergence::KlParts;
 use crate::session::keymap::{Binding, FaceCommand, Meaning, bindings};
 use crate::session::snapshot::{Badge, ExpertView, Snapshot};
 
@@ -92,7 +91,6 @@ fn meta(snapshot: &Snapshot, read_only: bool) -> Value {
         "force_over_time": episode.map(|episode| &episode.force_newtons),
         "experts": experts(snapshot),
         "active": fusion.map(|fusion| fusion.active.as_slice()).unwrap_or_default(),
-        "surprise_nats": fusion.and_then(|fusion| fusion.surprise).map(KlParts::total),
         "badge": badge(&snapshot.badge),
         "error_of": snapshot.frames.error_of,
         "position_error_cm": {
@@ -145,6 +143,13 @@ fn experts(snapshot: &Snapshot) -> Vec<Value> {
         .map(|fusion| fusion.experts.as_slice())
         .unwrap_or_default();
     let last = snapshot.experts.len().saturating_sub(1);
+    let damaged = |view: &ExpertView| {
+        let sees = view.expert.modalities();
+        let mut corruptions = snapshot.corruptions.iter();
+        corruptions.any(|(modality, corruption)| {
+            sees.contains(modality) && corruption.acts_at(snapshot.cursor)
+        })
+    };
     let one = |(place, view): (usize, &ExpertView)| {
         let reading = readings.get(place);
         let (r, g, b) = view.expert.rgb();
@@ -156,13 +161,13 @@ fn experts(snapshot: &Snapshot) -> Vec<Value> {
             "color": format!("#{r:02X}{g:02X}{b:02X}"),
             "fill": view.expert.fill(),
             "alpha": view.alpha,
+            "damaged": damaged(view),
             "switchable": switchable(snapshot, view.expert),
             "share": view.share,
             "share_mean": view.share_mean,
             "share_position": view.share_position,
             "information_nats": reading.and_then(|reading| reading.information_nats),
-            "fused_nats": reading.and_then(|reading| reading.fused).map(KlParts::total),
-            "nis": reading.and_then(|reading| reading.nis).map(|nis| nis.head),
+            "nis": reading.and_then(|reading| reading.nis),
             "pull_cm": reading.and_then(|reading| reading.pull_m).map(|pull| pull.map(|metres| 100.0 * metres)),
         })
     };

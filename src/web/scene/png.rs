@@ -4,16 +4,11 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 
 use crate::episode::Frame;
+use crate::measure::frame::{ERROR_RANGE, error_rgb};
 use crate::session::snapshot::SignedFrame;
 
 /// Pixels of the file along a pixel of the picture.
 pub const TIMES: usize = 4;
-/// The error at which the colours end, in parts of the grey range.
-pub const ERROR_RANGE: f32 = 0.5;
-/// Too dark by [`ERROR_RANGE`].
-const LOW: [f32; 3] = [0.0, 114.0, 178.0];
-/// Too bright by as much.
-const HIGH: [f32; 3] = [230.0, 159.0, 0.0];
 
 /// A grey picture.
 pub fn grey(frame: &Frame) -> Option<Vec<u8>> {
@@ -27,11 +22,8 @@ pub fn grey(frame: &Frame) -> Option<Vec<u8>> {
 
 /// An error: blue where it is too dark, white where it is right, orange where it is too bright.
 pub fn signed(frame: &SignedFrame) -> Option<Vec<u8>> {
-    let colors = frame.values.iter().map(|&value| {
-        let part = (f32::from(value) / (255.0 * ERROR_RANGE)).clamp(-1.0, 1.0);
-        let end = if part < 0.0 { LOW } else { HIGH };
-        end.map(|end| (255.0 + (end - 255.0) * part.abs()).round() as u8)
-    });
+    let colors = frame.values.iter();
+    let colors = colors.map(|&value| error_rgb(f32::from(value) / (255.0 * ERROR_RANGE)));
     let pixels = enlarged::<3>(frame.width, frame.height, colors);
     encode(frame.width, frame.height, &pixels, ExtendedColorType::Rgb8)
 }
@@ -105,7 +97,7 @@ mod tests {
         let color = |x: u32| picture[(4 * x, 0)].0;
         assert_eq!(
             [color(0), color(1), color(2)],
-            [[0, 114, 178], [255; 3], [230, 159, 0]]
+            [[33, 102, 172], [255; 3], [230, 97, 1]]
         );
     }
 

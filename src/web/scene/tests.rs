@@ -144,6 +144,12 @@ fn the_hidden_elements_hold_what_can_be_read() {
     );
     assert_eq!(meta["experts"].as_array().unwrap().len(), 4);
     assert_eq!(meta["experts"][3]["key"], "9");
+    let fusion = session.snapshot().fusion.unwrap();
+    let [said, prior] = [&meta["experts"][0]["nis"], &meta["experts"][3]["nis"]];
+    assert_eq!(said["dof"], fusion.experts[0].nis.unwrap().dof);
+    assert!(said["head"].is_number() && said["propagated"].is_number());
+    assert!(said["bounds"]["low"].is_number() && said["bounds"]["high"].is_number());
+    assert!(prior.is_null(), "the prior is no sensor");
     let keys: Value = serde_json::from_str(&value("poescope-keys")).unwrap();
     assert!(keys.as_array().unwrap().len() > 30);
     assert_eq!(value("poescope-state"), session.snapshot().state);

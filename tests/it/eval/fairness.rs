@@ -130,7 +130,7 @@ fn odd_recordings_are_left_out_and_counted() {
         "{out}{err}"
     );
     for why in [
-        "left out: episode `ep00001`: /control: a value that is not a finite number",
+        "left out: episode `ep00001`: /control at 0.53 s: a value that is not a finite number",
         "left out: model `v-h-p`: episode `ep00002` lacks haptic",
         "left out: model `v-h-p`: channel `fz` of episode `ep00003`",
     ] {

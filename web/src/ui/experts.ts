@@ -1,8 +1,10 @@
 /** The experts: switch, tempering, share of the belief, and what each of them adds. */
+import { boundsNote, mark } from "../bounds";
 import type { Client } from "../client";
 import { fillOf } from "../fills";
 import { percent, short } from "../format";
-import type { ExpertMeta, Meta } from "../meta";
+import type { TermName } from "../formulas";
+import type { Bounds, ExpertMeta, Meta } from "../meta";
 import * as names from "../names";
 import { type Control, control } from "./control";
 import { Keyed, h, setHidden, setText } from "./dom";
@@ -21,6 +23,7 @@ export class Experts {
   readonly #keyed = new Keyed<ExpertMeta>(this.#rows);
   readonly #made = new Map<Element, Row>();
   readonly #badge = h("span", { class: "badge", ...explained("badge") });
+  readonly #bounds = h("p", { class: "readings bounds", ...explained("nisPropagated") });
   readonly #latents = new LatentShares();
   readonly #controls: Control[];
   readonly #empty = h("p", { class: "empty" });
@@ -40,6 +43,7 @@ export class Experts {
         h("small", explained("sharePosition"), "pos"),
       ),
       this.#rows,
+      this.#bounds,
       this.#empty,
       h("div", { class: "row scope" }, scope.element, all.element),
       this.#latents.element,
@@ -69,9 +73,12 @@ export class Experts {
     const answer = this.#client.answer;
     rows.forEach((element, i) => {
       const expert = meta?.experts[i];
-      if (expert !== undefined && meta !== undefined) this.#made.get(element)?.update(expert, meta);
+      if (expert !== undefined) this.#made.get(element)?.update(expert);
       element.classList.toggle("chosen", answer?.mode === true && answer.palette === null && answer.expert === i);
     });
+    const read = (meta?.experts ?? []).flatMap(({ nis }) => nis ?? []);
+    setText(this.#bounds, boundsNote(read));
+    setHidden(this.#bounds, read.length === 0);
     this.#latents.update(meta);
   }
 }
@@ -98,6 +105,7 @@ class Row {
   readonly #state = h("span", { class: "state" });
   readonly #damaged = h("span", { class: "damaged", role: "img", ...explained("damage") }, "~");
   readonly #readings = h("p", { class: "readings" });
+  readonly #nis = h("p", { class: "readings" });
 
   constructor(client: Client, expert: ExpertMeta) {
     const toggle = control(client, names.switchOf(expert.name), { label: expert.name });
@@ -112,39 +120,52 @@ class Row {
       h("div", { class: "head" }, key, chip, toggle.element, this.#damaged, this.#mean, this.#position),
       h("div", { class: "bar", ...explained("share") }, this.#bar),
       h("div", { class: "tail" }, alpha.element, this.#state, this.#readings),
+      this.#nis,
     );
     this.element.style.setProperty("--c", expert.color);
   }
 
-  update(expert: ExpertMeta, meta: Meta): void {
+  update(expert: ExpertMeta): void {
     this.#controls.forEach((each) => each.update());
     setText(this.#mean, percent(expert.share.length === 0 ? null : expert.share_mean));
     setText(this.#position, percent(expert.share_position));
     this.#bar.style.width = `${(expert.share_mean ?? 0) * 100}%`;
-    const damaged = meta.corruptions.some(({ modality }) => sees(expert.name, modality));
     setText(this.#state, expert.alpha === 0 ? "off, out of the product" : "");
-    setHidden(this.#damaged, !damaged);
+    setHidden(this.#damaged, !expert.damaged);
     this.#damaged.setAttribute("aria-label", `the input of ${expert.name} is damaged`);
     this.element.classList.toggle("off", expert.alpha === 0);
     this.#readings.replaceChildren(...readings(expert));
     setHidden(this.#readings, expert.alpha === 0);
+    this.#nis.replaceChildren(...consistency(expert));
+    setHidden(this.#nis, expert.nis === null);
   }
 }
 
 function readings(expert: ExpertMeta): Node[] {
-  const parts: [Parameters<typeof explained>[0], string, number | null][] = [
+  const parts: [TermName, string, number | null][] = [
     ["information", "info", expert.information_nats],
-    ["nis", "NIS", expert.nis],
     ["pull", "pull", expert.pull_cm === null ? null : Math.hypot(...expert.pull_cm)],
   ];
-  return parts
-    .filter(([, , value]) => value !== null)
-    .map(([term, name, value]) => h("span", explained(term), `${name} `, h("b", { class: "number" }, short(value))));
+  return parts.filter(([, , value]) => value !== null).map(([term, name, value]) => reading(term, name, value));
 }
 
-const SEEN: Record<string, string[]> = { joint: ["haptic", "proprio"], concat: ["vision", "haptic", "proprio"] };
+/** NIS against both spreads of the prediction, each with its mark. */
+function consistency({ nis }: ExpertMeta): Node[] {
+  if (nis === null) return [];
+  return [
+    reading("nisHead", "NIS head", nis.head, nis.bounds),
+    reading("nisPropagated", "A P Aᵀ+Q", nis.propagated, nis.bounds),
+  ];
+}
 
-/** Whether an expert looks at a modality. */
-function sees(expert: string, modality: string): boolean {
-  return expert === modality || (SEEN[expert]?.includes(modality) ?? false);
+function reading(term: TermName, name: string, value: number | null, bounds: Bounds | null = null): Node {
+  const sign = mark(value, bounds);
+  const outside = sign === "▲" ? "above the bounds" : "below the bounds";
+  return h(
+    "span",
+    explained(term),
+    `${name} `,
+    h("b", { class: "number" }, short(value)),
+    sign === "" ? undefined : h("b", { class: "outside", role: "img", "aria-label": outside }, sign),
+  );
 }

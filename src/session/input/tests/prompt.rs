@@ -15,6 +15,11 @@ fn a_line_can_be_typed() {
         0.25
     );
     assert_eq!(press(":episode<space>3<enter>").0.episode_index, 2);
+    let paper = press(":preset<space>mit<enter>").0;
+    assert_eq!(
+        (paper.context, paper.state.contains("horizon=37")),
+        (5, true)
+    );
     assert_eq!(press(":q<enter>").1, [Action::Face(FaceCommand::Quit)]);
     let (snapshot, others, input) = press(":nonsense<enter>:4");
     assert!(matches!(&others[..], [Action::Explain { error: true, .. }]));

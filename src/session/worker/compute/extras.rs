@@ -106,8 +106,15 @@ impl Worker {
         };
         let mut responses = Vec::new();
         for &damage in &look.key.sight.damage {
+            // The damage rises through every severity, whatever the present one is.
+            let mut belief = look.key.clone();
+            for (modality, corruption) in &mut belief.sight.damage {
+                if *modality == damage.0 {
+                    corruption.severity = 0.0;
+                }
+            }
             let key = ResponseKey {
-                belief: look.key.clone(),
+                belief,
                 modality: damage.0,
             };
             if let Some(view) = self.memo.responses.get(&key) {

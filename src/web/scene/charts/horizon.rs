@@ -41,12 +41,12 @@ pub fn chart(snapshot: &Snapshot) -> UplotProps {
             .propagated
             .iter()
             .map(|&covariance| claim_cm(covariance));
-        chart.add(line("propagated σ", "#0072b2", &[8, 3]), propagated);
+        chart.add(line("propagated σ", PREDICTION, &[8, 3]), propagated);
         let sampled = spread
             .sampled
             .iter()
             .map(|&covariance| claim_cm(covariance));
-        chart.add(line("sampled σ", "#d55e00", &[2, 3]), sampled);
+        chart.add(line("sampled σ", PREDICTION, &[2, 3]), sampled);
     }
     chart.done("prediction by horizon", "cm", Some([Some(0.0), None]))
 }

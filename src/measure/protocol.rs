@@ -23,6 +23,9 @@ impl Protocol {
         horizon: 37,
     };
 
+    /// Both by the names of their sets.
+    pub const NAMED: [(&str, Self); 2] = [("synthetic", Self::SYNTHETIC), ("mit", Self::MIT)];
+
     /// The same, cut to an episode of `steps` images.
     #[must_use]
     pub fn within(self, steps: usize) -> Self {
