@@ -110,6 +110,8 @@ pub struct Session {
     /// What waits for the episode to be read.
     pending: VecDeque<Pending>,
     message: Option<Message>,
+    /// How many messages there have been.
+    told: u64,
     generation: u64,
     wanted: Option<Wanted>,
     answer: Option<Answer>,
@@ -188,6 +190,7 @@ impl Session {
             unknown_keys: Vec::new(),
             pending: VecDeque::new(),
             message: None,
+            told: 0,
             generation: 0,
             wanted: None,
             answer: None,
@@ -300,7 +303,7 @@ impl Session {
 
     /// Shows a line to the user that did not come from a command.
     pub fn say(&mut self, message: Message) {
-        self.message = Some(message);
+        self.put(message);
         self.refresh();
     }
 
@@ -335,11 +338,16 @@ impl Session {
     }
 
     fn inform(&mut self, text: String) {
-        self.message = Some(Message { error: false, text });
+        self.put(Message { error: false, text });
     }
 
     fn complain(&mut self, text: String) {
-        self.message = Some(Message { error: true, text });
+        self.put(Message { error: true, text });
+    }
+
+    fn put(&mut self, message: Message) {
+        self.message = Some(message);
+        self.told += 1;
     }
 
     /// Takes newer models, and what the worker has left; true if there was anything of use.

@@ -52,7 +52,8 @@ pub struct TrainArgs {
     /// Time between checkpoints, each of which can be resumed from and looked at
     #[arg(long, value_name = "MINUTES", value_parser = parse_interval, default_value = "3")]
     pub checkpoint_minutes: f64,
-    /// Go on from the run folder's last checkpoint
+    /// Go on from the run folder's last checkpoint; what is said besides has to be what the run was started with, but
+    /// for its limits
     #[arg(long)]
     pub resume: bool,
     /// Where the dataset has its roles.

@@ -39,7 +39,7 @@ impl Session {
         };
         let inferred = answer.and_then(|answer| answer.inferred.as_deref());
         let at_cursor = inferred.zip(cursor.checked_sub(first_belief));
-        let fault = answer.and_then(|answer| answer.fault.clone());
+        let message = self.line(answer.and_then(|answer| answer.fault.clone()));
         let readings = answer.and_then(|answer| answer.readings.as_deref());
         Snapshot {
             models: self.models.clone(),
@@ -99,7 +99,13 @@ impl Session {
                 let last = last.unwrap_or(cursor);
                 (first.min(last), first.max(last))
             }),
-            message: self.line(fault),
+            // What stands on its own account, as a fault does, is told once.
+            told: if message == self.message {
+                self.told
+            } else {
+                0
+            },
+            message,
             busy: self.is_busy(),
             current: self.is_current(),
             state: self.state().to_string(),
@@ -225,6 +231,7 @@ pub(super) fn empty(source: &dyn EpisodeSource, models: &[Arc<ModelInfo>]) -> Sn
         sampling: Sampling::default(),
         selection: None,
         message: None,
+        told: 0,
         busy: false,
         current: false,
         state: String::new(),

@@ -98,6 +98,8 @@ pub struct Snapshot {
     pub selection: Option<(usize, usize)>,
     /// The last thing to tell the user.
     pub message: Option<Message>,
+    /// Which of all messages it is: what is told again in the same words has another number. 0 for a fault, which stands.
+    pub told: u64,
     /// Whether something asked for is still being computed.
     pub busy: bool,
     /// Whether the images at the cursor are of what was asked for last, and not of what was shown before.

@@ -313,6 +313,7 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
         sampling: Sampling::default(),
         selection: None,
         message: None,
+        told: 0,
         busy: false,
         current: true,
         state: "v=1;model=v-h-p;step=9".to_owned(),

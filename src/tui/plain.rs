@@ -43,7 +43,17 @@ pub fn plain(snapshot: &Snapshot) -> String {
     sets::tell(&mut report, snapshot);
     response::tell(&mut report, snapshot);
     finding::tell(&mut report, snapshot);
+    config(&mut report, snapshot);
     report.0
+}
+
+/// What the model was made and trained as, a line of its config a line.
+fn config(report: &mut Report, snapshot: &Snapshot) {
+    let model = snapshot.models.get(snapshot.model);
+    let lines = model.into_iter().flat_map(|model| model.config.lines());
+    for line in lines.filter(|line| !line.is_empty()) {
+        report.fact("model config", line);
+    }
 }
 
 /// Lines of `label: fact`.
@@ -306,6 +316,17 @@ mod tests {
     #[test]
     fn a_fact_a_line_in_a_fixed_order() {
         insta::assert_snapshot!(plain(&fixture::snapshot(8, 16)));
+    }
+
+    #[test]
+    fn the_config_is_told_line_by_line() {
+        let mut snapshot = fixture::snapshot(8, 16);
+        let mut model = (*snapshot.models[0]).clone();
+        model.config = "latent = 16\n\n[training]\nbatch = 32\n".to_owned();
+        snapshot.models[0] = model.into();
+        let told =
+            "model config: latent = 16\nmodel config: [training]\nmodel config: batch = 32\n";
+        assert!(plain(&snapshot).ends_with(told));
     }
 
     #[test]

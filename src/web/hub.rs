@@ -59,8 +59,9 @@ struct State {
     composer: Composer,
     viewers: Vec<Arc<Viewer>>,
     shown: Option<(Arc<Snapshot>, Shown)>,
-    /// The notification that is shown, and how many there were.
+    /// The message that is shown with its number, and how many notifications there were.
     note: Option<Message>,
+    told: u64,
     notes: u64,
 }
 
@@ -80,6 +81,7 @@ impl Hub {
                 viewers: Vec::new(),
                 shown: None,
                 note: None,
+                told: 0,
                 notes: 0,
             }),
         };
@@ -261,7 +263,7 @@ impl State {
     /// A message that is another one than before, as a notification; the one before goes. They are not for those who
     /// come later.
     fn notify(&mut self, snapshot: &Snapshot) -> Vec<Arc<Change>> {
-        if snapshot.message == self.note {
+        if snapshot.message == self.note && snapshot.told == self.told {
             return Vec::new();
         }
         let mut changes = Vec::new();
@@ -300,6 +302,7 @@ impl State {
             });
         }
         self.note.clone_from(&snapshot.message);
+        self.told = snapshot.told;
         changes.into_iter().map(Arc::new).collect()
     }
 }

@@ -134,6 +134,10 @@ fn what_the_session_refuses_is_put_right_and_said() {
                 .as_f64()
                 .map_or(Value::Null, |h| json!(h))
         );
+        // The same words again are said again.
+        view.set("poescope-horizon", &json!(500)).await;
+        view.until("another notification", |view| view.notes() > 1)
+            .await;
     });
 }
 

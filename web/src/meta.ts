@@ -52,6 +52,8 @@ export interface Meta {
   scored: { done: number; of: number; asked: boolean };
   failure: { order: string; place: number | null; count: number };
   message: { error: boolean; text: string } | null;
+  /** Which of all messages it is: the same words again are another one. */
+  told: number;
   /** Something asked for is still being computed. */
   busy: boolean;
   /** False: the images are still of what was asked for before. */

@@ -28,13 +28,17 @@ impl Folder {
         let mut files = Vec::new();
         for entry in fs::read_dir(&self.0)? {
             let entry = entry?;
-            files.push((entry.metadata()?.modified()?, entry.path()));
+            // Another program may have removed it by now.
+            let file = entry.metadata().ok().filter(fs::Metadata::is_file);
+            let modified = file.and_then(|file| file.modified().ok());
+            files.extend(modified.map(|modified| (modified, entry.path())));
         }
         files.sort();
         let beyond = files.len().saturating_sub(most);
-        files[..beyond]
-            .iter()
-            .try_for_each(|(_, path)| fs::remove_file(path))
+        for (_, path) in &files[..beyond] {
+            let _ = fs::remove_file(path);
+        }
+        Ok(())
     }
 }
 

@@ -130,8 +130,11 @@ fn a_panic_is_told_and_the_session_lives_on() {
     assert!(!broken.busy && broken.frames.truth.is_some());
     assert_eq!(broken.experts[1].alpha, 0.0);
     assert_eq!(text(&broken), "the model broke down: haptic is off");
+    // It stands: what else is told does not tell it again.
+    let spoken = run(&mut session, [SetSpeed(2.0)]);
+    assert_eq!((&spoken.message, spoken.told), (&broken.message, 0));
     let mended = run(&mut session, [ToggleExpert(1)]);
-    assert!(mended.frames.belief.is_some());
+    assert!(mended.told > 0 && mended.frames.belief.is_some());
 }
 
 #[test]

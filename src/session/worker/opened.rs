@@ -35,7 +35,9 @@ impl Opened {
     pub fn new(episode: &Episode, missing: Vec<String>, contact_newtons: Option<f32>) -> Self {
         let steps = episode.steps();
         let force_newtons: Vec<f32> = (0..steps).map_while(|t| episode.force_newtons(t)).collect();
-        let threshold = contact_newtons.unwrap_or_else(|| own_contact_newtons(&force_newtons));
+        // Where nothing was ever touched in training, nothing is said of contact.
+        let trained = contact_newtons.filter(|&newtons| newtons > 0.0);
+        let threshold = trained.unwrap_or_else(|| own_contact_newtons(&force_newtons));
         let onsets = onsets(&force_newtons, threshold);
         let view = EpisodeView {
             id: episode.meta.id.clone(),
@@ -88,7 +90,7 @@ mod tests {
         haptic.fill(0.0);
         haptic[3 * window * 6..][..window * 6].fill(2.0);
         let onsets = |newtons| Opened::new(&episode, Vec::new(), newtons).onsets;
-        assert_eq!(onsets(None), [3]);
+        assert_eq!([onsets(None), onsets(Some(0.0))], [[3], [3]]);
         assert!(onsets(Some(5.0)).is_empty());
     }
 

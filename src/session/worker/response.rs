@@ -38,10 +38,11 @@ pub fn respond(
     mut check: impl FnMut() -> Result<(), Stop>,
 ) -> Result<Option<ResponseView>, Stop> {
     let looks = |expert: &Expert| expert.modalities().contains(&modality);
-    let Some(position) = predictor.info().experts.iter().position(looks) else {
+    let experts = &predictor.info().experts;
+    let Some(position) = experts.iter().position(looks) else {
         return Ok(None);
     };
-    let expert = predictor.info().experts[position];
+    let expert = experts[position];
     let mut view = ResponseView {
         modality,
         damage: corruption.damage,
@@ -65,7 +66,12 @@ pub fn respond(
             },
         );
         let mut trace = Arc::clone(&inferred.trace);
-        Arc::make_mut(&mut trace).experts[position] = predictor.encode_expert(&spoilt, position)?;
+        let trace_experts = &mut Arc::make_mut(&mut trace).experts;
+        for (i, said) in trace_experts.iter_mut().enumerate() {
+            if experts.get(i).is_some_and(looks) {
+                *said = predictor.encode_expert(&spoilt, i)?;
+            }
+        }
         let damaged = infer(trace, inferred.alphas.clone(), opened.steps(), predictor)?;
         let reading = Reading::of(&damaged, position, &corruption, opened, predictor);
         view.severity.push(severity);

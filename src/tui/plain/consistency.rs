@@ -18,7 +18,8 @@ pub(super) fn tell(report: &mut Report, snapshot: &Snapshot) {
     }
     if board.stale {
         report.fact("consistency numbers", "still of before the last change");
-    } else if !snapshot.corruptions.is_empty() {
+    }
+    if !snapshot.corruptions.is_empty() {
         report.fact("consistency episodes damaged", "none");
     }
     for sentence in &board.sentences {
@@ -74,8 +75,8 @@ fn nees(report: &mut Report, board: &BoardView) {
         report.numbers(&label, &by_horizon(nees));
     }
     let both = board.by_head.iter().chain(&board.by_propagation);
-    let widest = both.max_by_key(|at| at.episodes);
-    let band = widest.map(|at| [at.low as f32, at.high as f32]);
+    let fullest = both.max_by_key(|at| at.episodes);
+    let band = fullest.map(|at| [at.low as f32, at.high as f32]);
     report.numbers(
         "consistency NEES of 95 percent if honest",
         band.as_ref().map_or(&[][..], |band| band),

@@ -118,6 +118,7 @@ fn meta(snapshot: &Snapshot, read_only: bool) -> Value {
             "count": snapshot.table.queue.len(),
         },
         "message": snapshot.message,
+        "told": snapshot.told,
         "busy": snapshot.busy,
         "current": snapshot.current,
     })

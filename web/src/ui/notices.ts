@@ -46,7 +46,7 @@ export class Notices {
     if (reset) this.#explained = 0;
     const { meta, answer } = this.#client;
     const message = meta?.message ?? null;
-    const key = message === null ? "" : message.text;
+    const key = message === null ? "" : `${meta?.told} ${message.text}`;
     if (key !== this.#metaMessage) {
       this.#metaMessage = key;
       if (message !== null) this.say(message.text, message.error);
