@@ -90,9 +90,6 @@ mod tests {
     fn vhp(prior_expert: bool) -> ModelInfo {
         ModelInfo {
             name: "vhp".to_owned(),
-            source: String::new(),
-            update: None,
-            hash: String::new(),
             experts: vec![Expert::Vision, Expert::Joint],
             latent: 2,
             frame_stack: 1,

@@ -232,9 +232,6 @@ mod tests {
     fn model(experts: &[Expert], prior_expert: bool, trained_sets: &[u8]) -> ModelInfo {
         ModelInfo {
             name: "m".to_owned(),
-            source: String::new(),
-            update: None,
-            hash: String::new(),
             experts: experts.to_vec(),
             latent: 2,
             frame_stack: 1,

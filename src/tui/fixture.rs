@@ -241,8 +241,6 @@ pub fn snapshot(cursor: usize, steps: usize) -> Snapshot {
         models: vec![Arc::new(ModelInfo {
             name: "v-h-p".to_owned(),
             source: "sample_data/model".to_owned(),
-            update: None,
-            hash: String::new(),
             experts: EXPERTS[..3].iter().map(|&(expert, _)| expert).collect(),
             latent: DIMS,
             frame_stack: 1,

@@ -84,8 +84,6 @@ impl FakePredictor {
         let info = ModelInfo {
             name: name.to_owned(),
             source: "made up".to_owned(),
-            update: None,
-            hash: String::new(),
             experts: experts.to_vec(),
             latent: LATENT,
             frame_stack: 1,
