@@ -53,6 +53,8 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     }
     if let Some(state) = args.state {
         session.apply(Command::Restore(state));
+    } else {
+        view::first_look(&mut session);
     }
     let options = Options {
         address,
