@@ -131,6 +131,8 @@ pub struct Flag {
     pub stamp_nanos: i64,
     /// What: "gap of 1.2 s", "stamps run backwards".
     pub what: String,
+    /// Whether samples are missing behind the stamp.
+    pub gap: bool,
 }
 
 /// Sides and height of the object as it is drawn, in metres: those of the plate that both samples push, for a recording
@@ -208,6 +210,21 @@ impl Episode {
     /// Time of step `t` since the first frame, in seconds.
     pub fn secs_at(&self, t: usize) -> f64 {
         self.steps_nanos[t].saturating_sub(self.steps_nanos[0]) as f64 * 1e-9
+    }
+
+    /// The step that each flag concerns: the one at or before its stamp, or, of a gap, the one whose window lacks what
+    /// is missing.
+    pub fn flagged_steps(&self) -> impl Iterator<Item = usize> {
+        let last = self.steps().saturating_sub(1);
+        self.flags.iter().map(move |flag| {
+            let reached = |&step: &i64| step <= flag.stamp_nanos;
+            let behind = self.steps_nanos.partition_point(reached);
+            if flag.gap {
+                behind.min(last)
+            } else {
+                behind.saturating_sub(1)
+            }
+        })
     }
 
     /// What was odd about the recording, each with its topic and its time since the first frame.

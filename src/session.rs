@@ -31,6 +31,7 @@ pub mod wants;
 
 mod damaging;
 mod finding;
+mod lock;
 mod perform;
 mod planning;
 mod prompt;
@@ -44,13 +45,14 @@ mod worker;
 mod tests;
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use attach::Lines;
 use command::{Command, Scope};
 use known::Known;
+use lock::lock;
 use playback::Playback;
 use predict::Predictor;
 use restore::Restoration;
@@ -92,8 +94,6 @@ pub struct Session {
     compare: Option<usize>,
     /// Steps the user marked, by episode.
     marks: BTreeMap<String, BTreeSet<usize>>,
-    /// Selected steps; the second is none until it is chosen.
-    selection: Option<(usize, Option<usize>)>,
     table: Table,
     survey: Option<Survey>,
     cache: Option<Arc<dyn Cache>>,
@@ -169,7 +169,6 @@ impl Session {
             position_weights,
             compare: None,
             marks: BTreeMap::new(),
-            selection: None,
             table: Table::new(source.metas()),
             survey: None,
             cache: None,
@@ -270,12 +269,7 @@ impl Session {
 
     /// Has `wake` called, on another thread, whenever something has been computed.
     pub fn set_waker(&mut self, wake: Box<dyn Fn() + Send>) {
-        let mut waker = self
-            .shared
-            .waker
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        *waker = Some(wake);
+        *lock(&self.shared.waker) = Some(wake);
     }
 
     /// Waits until everything asked for has been computed; false if that takes longer than `timeout`.
@@ -312,6 +306,11 @@ impl Session {
         self.models.get(self.target.model)
     }
 
+    /// The first step, from 0, at which it has a belief.
+    fn first_belief(&self) -> usize {
+        self.model().map_or(0, |model| model.frame_stack)
+    }
+
     /// What there is of the present model and episode; after a switch, of the switches before it until the new
     /// beliefs are there.
     fn answered(&self) -> Option<&Answer> {
@@ -322,6 +321,11 @@ impl Session {
 
     fn opened(&self) -> Option<&Arc<Opened>> {
         self.answered()?.opened.as_ref()
+    }
+
+    /// T of the episode under the cursor; 0 until it is read.
+    fn steps(&self) -> usize {
+        self.opened().map_or(0, |opened| opened.steps())
     }
 
     /// Puts the cursor on a step of an episode that may be yet to be read.

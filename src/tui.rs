@@ -143,10 +143,7 @@ fn layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
 
 /// Where the view itself puts them.
 fn own_layout(screen: Rect, snapshot: &Snapshot, face: &Face) -> Layout {
-    let steps = snapshot
-        .episode
-        .as_ref()
-        .map_or(0, |episode| episode.secs.len());
+    let steps = snapshot.steps();
     let shape = Shape {
         view: face.view,
         steps,

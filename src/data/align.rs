@@ -163,6 +163,7 @@ fn flags(recording: &Recording, topics: &Topics, steps_nanos: &[i64]) -> Vec<Fla
             topic: topics.topic(role).to_owned(),
             stamp_nanos,
             what: "a value that is not a finite number".to_owned(),
+            gap: false,
         }));
     }
     flags

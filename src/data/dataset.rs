@@ -233,12 +233,6 @@ impl Dataset {
         splits(&self.metas, seed)
     }
 
-    /// The split of one episode, as [`Dataset::splits`] says, which is the one to call for many of them; none if there
-    /// is no such episode.
-    pub fn split_of(&self, index: usize, seed: u64) -> Option<Split> {
-        self.splits(seed).get(index).copied()
-    }
-
     /// The topic of each role.
     pub fn topics(&self) -> &Topics {
         &self.topics

@@ -225,7 +225,8 @@ mod tests {
             flags: vec![Flag {
                 topic: "/wrench".to_owned(),
                 stamp_nanos: -1,
-                what: "gap".to_owned(),
+                what: "gap of 1.0 s".to_owned(),
+                gap: true,
             }],
         }
     }

@@ -10,7 +10,7 @@ use super::score::Scorer;
 use crate::episode::Episode;
 use crate::measure::calibration::{Error2, nll};
 use crate::measure::shapley::shapley;
-use crate::measure::spread::{diagonal, plane, propagate};
+use crate::measure::spread::plane;
 use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, Rolled};
 
 /// Shapley values of an episode, one a sensor expert in the model's order.
@@ -95,17 +95,11 @@ fn position_nll(
     let probe = scorer.probe.as_ref()?;
     let poses = episode.object.as_ref()?;
     let config = &scorer.inspector.model().config;
-    let latent = config.latent;
     let from = protocol.context - config.frame_stack - 1;
-    let mut covariance = diagonal(beliefs.posterior.row(from).1);
+    let start = beliefs.posterior.row(from).1;
     let mut sum = 0.0;
-    for step in 0..rolled.gaussians.len() {
-        let (mean, log_var) = rolled.gaussians.row(step);
-        let transition = rolled
-            .transitions
-            .get(step * latent * latent..(step + 1) * latent * latent)?;
-        covariance = propagate(transition, &covariance, log_var);
-        let [x, y] = probe.position(mean);
+    for (step, covariance) in rolled.covariances(start).enumerate() {
+        let [x, y] = probe.position(rolled.gaussians.row(step).0);
         let truth = poses.get(protocol.context + step)?;
         let error = Error2 {
             error_m: [truth.x - x, truth.y - y],

@@ -133,11 +133,11 @@ fn shown(
         let state = settings_of(state, session, episode);
         session.apply(Command::Restore(state.to_string()));
     }
-    wait(session, onlooker)?;
+    wait(session, || onlooker.stops())?;
     let told = session.snapshot().message.filter(|message| message.error);
     session.apply(Command::SeekClamped(*steps.start()));
     if let Some(told) = &told {
-        let name = |snapshot: &Snapshot| Some(snapshot.models.get(snapshot.model)?.name.clone());
+        let name = |snapshot: &Snapshot| Some(snapshot.shown_model()?.name.clone());
         let name = name(&session.snapshot()).unwrap_or_default();
         let meta = session.snapshot().episode.map(|episode| episode.id.clone());
         let id = meta.unwrap_or_default();
@@ -145,7 +145,7 @@ fn shown(
     }
     let at = |step| {
         session.apply(Command::SeekClamped(step));
-        wait(session, onlooker)?;
+        wait(session, || onlooker.stops())?;
         Ok(session.snapshot())
     };
     let mut snapshots: Vec<Snapshot> = steps.map(at).collect::<Result<_, ExportError>>()?;
@@ -174,9 +174,13 @@ fn settings_of(state: &State, session: &Session, episode: usize) -> State {
     }
 }
 
-fn wait(session: &mut Session, onlooker: &dyn Onlooker) -> Result<(), ExportError> {
+/// Waits until all that was asked for is computed.
+///
+/// # Errors
+/// If it is to stop before.
+pub fn wait(session: &mut Session, stops: impl Fn() -> bool) -> Result<(), ExportError> {
     loop {
-        if onlooker.stops() {
+        if stops() {
             return Err(ExportError::Stopped);
         }
         if session.wait_idle(PATIENCE) {

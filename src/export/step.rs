@@ -69,15 +69,7 @@ impl<'a> Step<'a> {
 
     /// α as the product has it.
     pub fn alpha(&self, i: usize) -> f32 {
-        let Some(expert) = self.expert(i) else {
-            return 0.0;
-        };
-        let model = self.at.models.get(self.at.model);
-        let is_left_out = model.is_some_and(|model| !model.prior_expert);
-        if is_left_out && expert.expert == Expert::Prior {
-            return 0.0;
-        }
-        expert.alpha
+        self.expert(i).map_or(0.0, |expert| expert.alpha)
     }
 
     /// What is read of an expert.

@@ -133,14 +133,9 @@ pub fn dependence_beyond(errors: &[Vec<[f32; 2]>], residual: [f32; 3]) -> Option
     })
 }
 
-/// NEES inflation by `k` copies of one expert beside an honest prior, in one product: `(T₀ + k² Tₑ) / (T₀ + k Tₑ)`
-/// (D14). NaN where a precision is negative, not finite, or the sum is zero.
-pub fn copies_inflation(prior_precision: f64, expert_precision: f64, k: usize) -> f64 {
-    inflation(prior_precision, expert_precision, k, 1.0)
-}
-
 /// `(T₀ + n Tₑ (1 + (n − 1) ρ)) / (T₀ + n Tₑ)`: true over claimed variance of one product of an honest prior and n
-/// experts of one precision whose errors correlate by ρ. NaN where [`copies_inflation`] is.
+/// experts of one precision whose errors correlate by ρ: the NEES of the product; copies of one expert have ρ = 1 (D14).
+/// NaN where a precision is negative, not finite, or the sum is zero.
 pub fn inflation(prior_precision: f64, expert_precision: f64, n: usize, rho: f64) -> f64 {
     let sound = |x: f64| x >= 0.0 && x.is_finite();
     if !sound(prior_precision) || !sound(expert_precision) {

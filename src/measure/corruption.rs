@@ -71,17 +71,10 @@ impl Damage {
         Self::ALL.into_iter().find(|damage| damage.name() == name)
     }
 
-    /// The one after it in [`Damage::ALL`]; the first after the last.
-    #[must_use]
-    pub fn next(self) -> Self {
-        match self {
-            Self::Zero => Self::Hold,
-            Self::Hold => Self::Noise,
-            Self::Noise => Self::Occlude,
-            Self::Occlude => Self::Bias,
-            Self::Bias => Self::Delay,
-            Self::Delay => Self::Zero,
-        }
+    /// Those that have a meaning for a modality: windows cannot be occluded.
+    pub fn of(modality: Modality) -> impl Iterator<Item = Self> {
+        let fits = move |&damage: &Self| damage != Self::Occlude || modality == Modality::Vision;
+        Self::ALL.into_iter().filter(fits)
     }
 }
 
@@ -150,9 +143,9 @@ impl Corruption {
     }
 }
 
-/// Whether a damage has a meaning for a modality: windows cannot be occluded.
+/// Whether a damage has a meaning for a modality.
 pub fn applies(damage: Damage, modality: Modality) -> bool {
-    damage != Damage::Occlude || modality == Modality::Vision
+    Damage::of(modality).any(|fit| fit == damage)
 }
 
 /// The episode with one modality's input damaged.

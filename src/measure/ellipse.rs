@@ -32,12 +32,12 @@ impl Ellipse {
         }
     }
 
-    /// `count` points of the ellipse of `sigmas` σ around `centre`, in order.
+    /// `count` points of the ellipse of `sigmas` σ around `centre`, in order, and the first once more: a closed line.
     pub fn outline(self, centre: [f32; 2], sigmas: f32, count: usize) -> Vec<[f32; 2]> {
         let (sin, cos) = self.angle.sin_cos();
-        (0..count)
+        (0..=count)
             .map(|i| {
-                let turn = TAU * i as f32 / count as f32;
+                let turn = TAU * (i % count) as f32 / count as f32;
                 let (a, b) = (
                     sigmas * self.major * turn.cos(),
                     sigmas * self.minor * turn.sin(),
@@ -77,7 +77,7 @@ mod tests {
         let determinant = xx * yy - xy * xy;
         let outline =
             Ellipse::of_covariance(covariance).outline([3.0, -1.0], SIGMAS_OF_95_PERCENT, 17);
-        assert_eq!(outline.len(), 17);
+        assert_eq!((outline.len(), outline[0]), (18, outline[17]));
         for [x, y] in outline {
             let (dx, dy) = (x - 3.0, y + 1.0);
             let squared = (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / determinant;

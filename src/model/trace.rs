@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::measure::spread::{diagonal, propagate};
+
 /// A run of diagonal Gaussians over the latent, one a belief; row major `(beliefs, Z)`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GaussianTrace {
@@ -59,6 +61,20 @@ pub struct Rolled {
     pub gaussians: GaussianTrace,
     /// A of each step, `(h, Z, Z)` row major, its gates as on the mean path (D20).
     pub transitions: Vec<f32>,
+}
+
+impl Rolled {
+    /// The covariance after each control, `A P Aᵀ + Q` from a belief's log-variances on, `(Z, Z)` row major (D20).
+    pub fn covariances(&self, start_log_var: &[f32]) -> impl Iterator<Item = Vec<f64>> {
+        let latent = start_log_var.len();
+        let mut covariance = diagonal(start_log_var);
+        let transitions = self.transitions.chunks_exact((latent * latent).max(1));
+        let steps = transitions.zip(0..self.gaussians.len());
+        steps.map(move |(transition, step)| {
+            covariance = propagate(transition, &covariance, self.gaussians.row(step).1);
+            covariance.clone()
+        })
+    }
 }
 
 /// α of every expert at every belief, `(beliefs, M)` with the prior last: 0 off, 1 as trained.

@@ -5,10 +5,11 @@
 //! nobody up.
 
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::sync::{Arc, Mutex, Weak};
 
 use super::Session;
 use super::command::Command;
+use super::lock::lock;
 use super::predict::Predictor;
 use super::snapshot::{Message, Snapshot};
 use super::wants::Wants;
@@ -140,10 +141,6 @@ impl Session {
             (line.notify)();
         }
     }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 #[cfg(test)]

@@ -135,7 +135,7 @@ impl Session {
     /// Begins a selection, ends it, forgets it.
     pub(super) fn select(&mut self) {
         let cursor = self.playback.cursor;
-        let (selection, text) = match self.selection {
+        let (selection, text) = match self.playback.selection {
             None => (
                 Some((cursor, None)),
                 format!("selection from step {}: V again ends it", cursor + 1),
@@ -154,16 +154,7 @@ impl Session {
                 (None, "nothing selected".to_owned())
             }
         };
-        self.selection = selection;
-        self.keep_selection();
+        self.playback.selection = selection;
         self.inform(text);
-    }
-
-    /// Tells playback what is selected.
-    pub(super) fn keep_selection(&mut self) {
-        self.playback.selection = match self.selection {
-            Some((first, Some(last))) => Some((first, last)),
-            _ => None,
-        };
     }
 }

@@ -32,9 +32,14 @@ impl ModelInfo {
         self.factors().len() > 1
     }
 
+    /// Whether this expert is one of several that are multiplied.
+    pub fn can_switch(&self, expert: Expert) -> bool {
+        self.has_product() && self.factors().contains(&expert)
+    }
+
     /// α of an expert at a step; what cannot be switched in this model is as trained.
     pub fn alpha(&self, switches: &Switches, expert: Expert, step: usize) -> f32 {
-        if self.has_product() && self.factors().contains(&expert) {
+        if self.can_switch(expert) {
             switches.alpha(expert, step)
         } else {
             1.0

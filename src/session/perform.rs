@@ -19,7 +19,7 @@ impl Session {
         reason = "a line or two a command, none left out"
     )]
     pub(super) fn perform(&mut self, command: Command) {
-        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let steps = self.steps();
         match command {
             Command::TogglePlay => self.playback.toggle(steps),
             Command::Step(by) => self.playback.step(by, steps),
@@ -94,7 +94,7 @@ impl Session {
                 }
             }
             Command::CycleLoop => {
-                let selected = self.playback.selection.is_some();
+                let selected = self.playback.selected().is_some();
                 let (looping, words) = match self.playback.looping {
                     Looping::Off => (Looping::All, "loops"),
                     Looping::All if selected => (Looping::Selection, "loops the selection"),

@@ -10,7 +10,7 @@ impl Session {
     /// Sets c, if there is a belief at the c-th image and something to predict after it.
     pub(super) fn set_context(&mut self, context: usize) -> Result<String, Refusal> {
         let (least, _) = self.context_range();
-        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let steps = self.steps();
         if context < least {
             return Err(format!(
                 "the first belief is at step {least}: nothing can be predicted before it"
@@ -56,7 +56,7 @@ impl Session {
     /// Changes h within what the episode has room for.
     pub(super) fn change_horizon(&mut self, by: i64) -> String {
         let rollout = self.rollout();
-        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let steps = self.steps();
         let most = steps.saturating_sub(rollout.start + 1).max(1);
         let horizon = moved(rollout.horizon, by, 1, most);
         self.settings.horizon = horizon;
@@ -65,8 +65,8 @@ impl Session {
 
     /// The least and the greatest c of this model on this episode.
     pub(super) fn context_range(&self) -> (usize, usize) {
-        let least = self.model().map_or(0, |model| model.frame_stack) + 1;
-        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let least = self.first_belief() + 1;
+        let steps = self.steps();
         (least, steps.saturating_sub(1).max(least))
     }
 }

@@ -20,8 +20,8 @@ pub struct Playback {
     pub playing: bool,
     /// What it does at the end.
     pub looping: Looping,
-    /// First and last selected step.
-    pub selection: Option<(usize, usize)>,
+    /// First and last selected step; the last is none until it is chosen.
+    pub selection: Option<(usize, Option<usize>)>,
     /// Speed as a power of two.
     exponent: i64,
     /// Recorded seconds gone by since the cursor came to its step.
@@ -97,9 +97,15 @@ impl Playback {
         before != (self.cursor, self.playing)
     }
 
+    /// First and last selected step, once both are chosen.
+    pub fn selected(&self) -> Option<(usize, usize)> {
+        let (first, last) = self.selection?;
+        Some((first, last?))
+    }
+
     /// First and last step of a round.
     fn round(&self, steps: usize) -> (usize, usize) {
-        let (first, last) = self.selection.unwrap_or((0, usize::MAX));
+        let (first, last) = self.selected().unwrap_or((0, usize::MAX));
         let end = steps.saturating_sub(1);
         (first.min(end), last.min(end))
     }
@@ -212,7 +218,7 @@ mod tests {
     #[test]
     fn a_selection_goes_round() {
         let mut playback = playing(Looping::Selection);
-        playback.selection = Some((0, 1));
+        playback.selection = Some((0, Some(1)));
         let mut seen = Vec::new();
         for _ in 0..5 {
             let left = playback.next_step_in(&SECS).unwrap_or_default();

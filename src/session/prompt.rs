@@ -6,7 +6,6 @@ mod verbs;
 use super::command::Command;
 use super::input::Action;
 use super::snapshot::Snapshot;
-pub(super) use bench::{aimed, kinds};
 pub(super) use verbs::VERBS;
 
 /// A word that can be typed, with what belongs after it.

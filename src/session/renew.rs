@@ -1,8 +1,9 @@
 //! Models that change while they are looked at: a training run leaves a newer checkpoint now and then.
 
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 
 use super::Session;
+use super::lock::lock;
 use super::predict::Predictor;
 use super::worker::{Found, Shared};
 
@@ -14,13 +15,7 @@ impl Renewal {
     /// Puts a newer one in the place of model `index`, or tells why it cannot be had. The face is woken, and takes it
     /// in when it next looks; of several until then the newest counts.
     pub fn offer(&self, index: usize, found: Found) {
-        let mut renewed = self
-            .0
-            .renewed
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        renewed.insert(index, found);
-        drop(renewed);
+        lock(&self.0.renewed).insert(index, found);
         self.0.wake();
     }
 }
@@ -34,13 +29,7 @@ impl Session {
     /// Takes newer models in; true if there was one. Cursor, episode and switches stay as they are, and so does the
     /// picture until the new model has made its own.
     pub(super) fn take_renewed(&mut self) -> bool {
-        let renewed = std::mem::take(
-            &mut *self
-                .shared
-                .renewed
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner),
-        );
+        let renewed = std::mem::take(&mut *lock(&self.shared.renewed));
         let any = !renewed.is_empty();
         for (index, found) in renewed {
             match found {
@@ -59,13 +48,7 @@ impl Session {
         self.position_weights[index] = predictor.position_weights().map(Arc::from);
         self.shared.replace_model(index, Arc::clone(&predictor));
         self.survey_anew(index, &predictor);
-        let mut successors = self
-            .shared
-            .successors
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        successors.insert(index, predictor);
-        drop(successors);
+        lock(&self.shared.successors).insert(index, predictor);
         if index == self.target.model || Some(index) == self.other() {
             // What was wanted is wanted again.
             self.wanted = None;

@@ -55,7 +55,7 @@ impl Session {
             state,
             mut complaints,
         } = restoration;
-        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let steps = self.steps();
         self.change(|session| {
             let settings = &mut session.settings;
             settings.scope = state.scope.unwrap_or(settings.scope);
@@ -127,9 +127,9 @@ impl Session {
             }
         }
         let last = |(first, last): (usize, Option<usize>)| last.unwrap_or(first);
-        self.selection = state.selection.filter(|&selection| last(selection) < steps);
-        self.keep_selection();
-        if self.selection != state.selection {
+        let selection = state.selection.filter(|&selection| last(selection) < steps);
+        self.playback.selection = selection;
+        if selection != state.selection {
             complaints.push(format!("select: reaches outside 1 to {steps}"));
         }
     }
@@ -166,7 +166,7 @@ impl Session {
     /// The state string that brings all of this back.
     pub(super) fn state(&self) -> State {
         let key = self.episode_keys.get(self.target.episode);
-        let steps = self.opened().map_or(0, |opened| opened.steps());
+        let steps = self.steps();
         let compare = self.compare.filter(|&model| model != self.target.model);
         State {
             episode: key.cloned(),
@@ -188,6 +188,7 @@ impl Session {
                 .and_then(|key| self.marks.get(key).cloned())
                 .unwrap_or_default(),
             selection: self
+                .playback
                 .selection
                 .filter(|&(first, last)| last.unwrap_or(first) < steps),
             order: self.table.view().order,

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::Session;
 use super::badge::badge;
-use super::settings::{Rollout, Sampling, Settings};
+use super::settings::{Rollout, Settings};
 use super::snapshot::other::OtherView;
 use super::snapshot::{
     Badge, ErrorOf, Estimate, ExpertView, FrameRow, LatentView, Message, ModelInfo, PositionView,
@@ -13,14 +13,14 @@ use super::snapshot::{
 use super::worker::{Answer, Inferred, Opened, Pictures};
 use crate::episode::{EpisodeSource, Frame};
 use crate::measure::frame::signed_difference;
-use crate::measure::fusion::{mean_share, position_shares, precision_shares};
+use crate::measure::fusion::mean_share;
 use crate::modality::Expert;
 
 impl Session {
     /// Context and horizon fitted to the present episode.
     pub(super) fn rollout(&self) -> Rollout {
-        let steps = self.opened().map_or(0, |opened| opened.steps());
-        let frame_stack = self.model().map_or(0, |model| model.frame_stack);
+        let steps = self.steps();
+        let frame_stack = self.first_belief();
         self.settings.rollout(steps, frame_stack)
     }
 
@@ -32,7 +32,7 @@ impl Session {
             Some(_) => self.rollout(),
             None => wished_rollout(&self.settings),
         };
-        let first_belief = self.model().map_or(0, |model| model.frame_stack);
+        let first_belief = self.first_belief();
         let badge_of = |model: &Arc<ModelInfo>| {
             let first = model.frame_stack;
             badge(model, &self.settings.switches, first, cursor.max(first))
@@ -95,7 +95,7 @@ impl Session {
                 .collect(),
             control_edit: self.settings.controls,
             sampling: self.settings.sampling,
-            selection: self.selection.map(|(first, last)| {
+            selection: self.playback.selection.map(|(first, last)| {
                 let last = last.unwrap_or(cursor);
                 (first.min(last), first.max(last))
             }),
@@ -120,7 +120,7 @@ impl Session {
         };
         let cursor = self.playback.cursor;
         let cell = answer.pictures.strip.get(cursor);
-        let first_belief = self.model().map_or(0, |model| model.frame_stack);
+        let first_belief = self.first_belief();
         answer.done || cell.is_some_and(|cell| cell.belief.is_some() || cursor < first_belief)
     }
 
@@ -140,20 +140,11 @@ impl Session {
         };
         let step = self.playback.cursor.max(model.frame_stack);
         let at_cursor = inferred.zip(self.playback.cursor.checked_sub(model.frame_stack));
-        let shares = at_cursor.map(|(inferred, belief)| {
-            let factors = inferred.factors(belief);
-            let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
-            let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
-            precision_shares(&alphas, &log_vars)
+        let shares = at_cursor.map(|(inferred, belief)| inferred.shares(belief));
+        let position = at_cursor.and_then(|(inferred, belief)| {
+            let weights = self.position_weights.get(self.target.model)?.as_deref()?;
+            inferred.position_shares(belief, weights)
         });
-        let position = at_cursor
-            .zip(shares.as_ref())
-            .and_then(|((inferred, belief), shares)| {
-                let weights = self.position_weights.get(self.target.model)?.as_deref()?;
-                let log_var = inferred.beliefs.posterior.row(belief).1;
-                let variance: Vec<f32> = log_var.iter().map(|v| v.exp()).collect();
-                position_shares(shares, weights, &variance)
-            });
         let view = |(i, expert)| {
             let share: Vec<f32> = shares
                 .as_ref()
@@ -198,43 +189,9 @@ pub(super) fn empty(source: &dyn EpisodeSource, models: &[Arc<ModelInfo>]) -> Sn
     Snapshot {
         dataset: source.name().to_owned(),
         models: models.to_vec(),
-        model: 0,
-        episode: None,
-        episode_index: 0,
         episode_count: source.metas().len(),
-        cursor: 0,
-        playing: false,
         speed: 1.0,
-        looping: super::command::Looping::default(),
-        scope: super::command::Scope::default(),
-        context: 0,
-        horizon: 0,
-        start: 0,
-        experts: Vec::new(),
-        badge: Badge::NoProduct,
-        frames: FrameRow::default(),
-        strip: Arc::default(),
-        position: None,
-        belief: None,
-        psnr_db: Arc::default(),
-        fusion: None,
-        series: None,
-        lattice: None,
-        spread: None,
-        responses: Arc::default(),
-        board: None,
-        table: Arc::default(),
-        other: None,
-        events: Arc::default(),
-        corruptions: Vec::new(),
-        control_edit: None,
-        sampling: Sampling::default(),
-        selection: None,
-        message: None,
-        told: 0,
-        busy: false,
-        current: false,
-        state: String::new(),
+        ..Snapshot::default()
     }
 }
 
@@ -293,7 +250,7 @@ fn position_view(opened: &Opened, pictures: &Pictures, cursor: usize) -> Option<
     let prediction = pictures.rollout_positions.clone().unwrap_or_default();
     let error_m = |estimates: &[Option<Estimate>]| {
         let (estimate, truth) = ((*estimates.get(cursor)?)?, opened.poses.get(cursor)?);
-        Some((estimate.x - truth.x).hypot(estimate.y - truth.y))
+        Some(estimate.distance_m(*truth))
     };
     Some(PositionView {
         truth: Arc::clone(&opened.poses),

@@ -2,6 +2,7 @@
 
 pub mod board;
 pub mod lattice;
+mod lookups;
 pub mod other;
 pub mod reading;
 pub mod response;
@@ -15,6 +16,7 @@ use serde::Serialize;
 use super::command::{Looping, Scope};
 use super::settings::{ControlEdit, Sampling};
 use crate::episode::{Frame, PlanarPose, Split};
+use crate::measure::calibration::Error2;
 use crate::measure::corruption::Corruption;
 use crate::modality::{Expert, ExpertSet, Modality};
 use board::BoardView;
@@ -26,7 +28,7 @@ use spread::SpreadView;
 use table::TableView;
 
 /// The state of a session at one moment.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Snapshot {
     /// Name of the dataset.
     pub dataset: String,
@@ -153,7 +155,7 @@ pub struct EpisodeView {
     pub push_newtons: Vec<[f32; 2]>,
     /// What was odd about the recording, with topic and time.
     pub flags: Vec<String>,
-    /// The step at or before which each of it was seen.
+    /// The step that each of it concerns.
     pub flagged_steps: Vec<usize>,
     /// Roles the model needs and the recording lacks; empty when the model can run.
     pub missing: Vec<String>,
@@ -190,13 +192,14 @@ pub struct LatentView {
 }
 
 /// Whether the switches at the cursor were in the model's training.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub enum Badge {
     /// They were.
     Trained,
     /// They were not; why, and what was.
     Untrained(String),
     /// There is nothing to switch: the model has no product.
+    #[default]
     NoProduct,
 }
 
@@ -261,7 +264,7 @@ pub struct StepPsnr {
 }
 
 /// Positions of the object on the table, in metres.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct PositionView {
     /// Recorded pose at each step; empty if not recorded.
     pub truth: Arc<Vec<PlanarPose>>,
@@ -288,6 +291,21 @@ pub struct Estimate {
     pub y: f32,
     /// Covariance as xx, xy, yy in square metres.
     pub covariance: [f32; 3],
+}
+
+impl Estimate {
+    /// How far it is off, with what it claims.
+    pub fn error(&self, truth_m: [f32; 2]) -> Error2 {
+        Error2 {
+            error_m: [truth_m[0] - self.x, truth_m[1] - self.y],
+            covariance: self.covariance,
+        }
+    }
+
+    /// Its distance from a pose, in metres.
+    pub fn distance_m(&self, truth: PlanarPose) -> f32 {
+        (self.x - truth.x).hypot(self.y - truth.y)
+    }
 }
 
 /// A step that stands out.

@@ -10,7 +10,7 @@ mod score;
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -18,6 +18,7 @@ pub use cache::Cache;
 use score::Sheet;
 
 use super::known::Known;
+use super::lock::lock;
 use super::predict::Predictor;
 use super::settings::Settings;
 use super::snapshot::board::BoardView;
@@ -388,12 +389,8 @@ impl Surveyor {
     }
 
     fn take_successors(&mut self) {
-        let mut successors = self
-            .shared
-            .successors
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        for (model, predictor) in std::mem::take(&mut *successors) {
+        let successors = std::mem::take(&mut *lock(&self.shared.successors));
+        for (model, predictor) in successors {
             if let (Some(slot), Some(scored)) =
                 (self.predictors.get_mut(model), self.scored.get_mut(model))
             {

@@ -1,9 +1,10 @@
 //! Between a session and its survey: when it starts, what it is asked, what becomes of its answers.
 
-use std::sync::{Arc, PoisonError};
+use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use super::Session;
+use super::lock::lock;
 use super::predict::Predictor;
 use super::snapshot::board::BoardView;
 use super::survey::{self, BoardRequest, Cache, SurveyAnswer, SurveyRequest, SurveyShared};
@@ -208,12 +209,7 @@ impl Session {
         let Some(survey) = &mut self.survey else {
             return;
         };
-        survey
-            .shared
-            .successors
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .insert(model, Arc::clone(predictor));
+        lock(&survey.shared.successors).insert(model, Arc::clone(predictor));
         // Answers on their way are the former model's.
         survey.generation += 1;
         survey.wanted = None;

@@ -23,7 +23,7 @@ use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread::JoinHandle;
 
 pub use answer::{Answer, Pictures, Request};
@@ -33,6 +33,7 @@ use memo::Memo;
 pub use memo::Target;
 pub use opened::Opened;
 
+use super::lock::lock;
 use super::predict::{PredictError, Predictor};
 use crate::episode::{EpisodeSource, SourceError};
 
@@ -75,14 +76,12 @@ impl Shared {
 
     /// The models as they are now.
     pub fn models(&self) -> Vec<Arc<dyn Predictor>> {
-        let models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
-        models.clone()
+        lock(&self.models).clone()
     }
 
     /// Puts another one in the place of model `index`, if there is one.
     pub fn replace_model(&self, index: usize, model: Arc<dyn Predictor>) {
-        let mut models = self.models.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(place) = models.get_mut(index) {
+        if let Some(place) = lock(&self.models).get_mut(index) {
             *place = model;
         }
     }
@@ -94,14 +93,12 @@ impl Shared {
 
     /// Whether a face is woken when something has been computed.
     pub fn wakes(&self) -> bool {
-        let waker = self.waker.lock().unwrap_or_else(PoisonError::into_inner);
-        waker.is_some()
+        lock(&self.waker).is_some()
     }
 
     /// Has the face look at what is new.
     pub fn wake(&self) {
-        let waker = self.waker.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(wake) = waker.as_ref() {
+        if let Some(wake) = lock(&self.waker).as_ref() {
             wake();
         }
     }
@@ -185,12 +182,8 @@ impl Worker {
 
     /// Nothing that a model has said holds for the one that takes its place.
     fn take_successors(&mut self) {
-        let mut successors = self
-            .shared
-            .successors
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner);
-        for (model, predictor) in std::mem::take(&mut *successors) {
+        let successors = std::mem::take(&mut *lock(&self.shared.successors));
+        for (model, predictor) in successors {
             if let Some(slot) = self.predictors.get_mut(model) {
                 *slot = predictor;
                 self.memo.forget(model);

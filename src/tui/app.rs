@@ -320,10 +320,7 @@ impl App {
     }
 
     fn seek(&mut self, timeline: Rect, at: Position, snapshot: &Snapshot) {
-        let steps = snapshot
-            .episode
-            .as_ref()
-            .map_or(0, |episode| episode.secs.len());
+        let steps = snapshot.steps();
         let axis = Axis::of(timeline.width, steps);
         if let Some(step) = axis.step_at(at.x.saturating_sub(timeline.x)) {
             self.session.apply(Command::SeekClamped(step));

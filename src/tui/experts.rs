@@ -112,7 +112,7 @@ fn line(
     let emphasis = if on { Style::new() } else { strong() };
     text(buf, pane, MARK, row, &switch(view.alpha), emphasis);
 
-    if let Some(damage) = damage(expert, &snapshot.corruptions, snapshot.cursor) {
+    if let Some(damage) = damage(expert, snapshot) {
         let warning = strong().patch(face.depth.ink(WARNING));
         right(buf, pane, SIGMA_END, row, &damage, warning);
     } else {
@@ -144,21 +144,16 @@ fn switch(alpha: f32) -> String {
     }
 }
 
-/// What is wrong with an expert's input at a step: `~noise 0.5`, with the modality's letter where it has several.
-fn damage(expert: Expert, corruptions: &[(Modality, Corruption)], step: usize) -> Option<String> {
-    let several = expert.modalities().len() > 1;
-    let found = corruptions.iter().find(|(modality, corruption)| {
-        expert.modalities().contains(modality) && corruption.acts_at(step)
-    });
-    found.map(|(modality, corruption)| {
-        let letter = match modality {
-            _ if !several => "",
-            Modality::Vision => "V",
-            Modality::Haptic => "H",
-            Modality::Proprio => "P",
-        };
-        format!("{letter}{}", damage_badge(corruption))
-    })
+/// What is wrong with an expert's input: `~noise 0.5`, with the modality's letter where it looks at several.
+fn damage(expert: Expert, snapshot: &Snapshot) -> Option<String> {
+    let (modality, corruption) = snapshot.damage_of(expert)?;
+    let letter = match modality {
+        _ if expert.modalities().len() == 1 => "",
+        Modality::Vision => "V",
+        Modality::Haptic => "H",
+        Modality::Proprio => "P",
+    };
+    Some(format!("{letter}{}", damage_badge(&corruption)))
 }
 
 /// A corruption in a few columns: `~noise 0.5`.
@@ -189,6 +184,7 @@ fn mean_sigma(latent: &LatentView) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tui::fixture;
 
     #[test]
     fn a_switch_is_read_from_its_mark_and_its_word() {
@@ -212,7 +208,12 @@ mod tests {
             patch: [0.5; 2],
             seed: 0,
         };
-        let at = |expert, step| damage(expert, &[(Modality::Haptic, noise)], step);
+        let mut snapshot = fixture::snapshot(0, 16);
+        snapshot.corruptions = vec![(Modality::Haptic, noise)];
+        let mut at = |expert, step| {
+            snapshot.cursor = step;
+            damage(expert, &snapshot)
+        };
         assert_eq!(at(Expert::Haptic, 3).as_deref(), Some("~noise 0.5"));
         assert_eq!(at(Expert::Joint, 5).as_deref(), Some("H~noise 0.5"));
         assert_eq!(at(Expert::Haptic, 6), None);

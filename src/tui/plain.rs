@@ -49,7 +49,7 @@ pub fn plain(snapshot: &Snapshot) -> String {
 
 /// What the model was made and trained as, a line of its config a line.
 fn config(report: &mut Report, snapshot: &Snapshot) {
-    let model = snapshot.models.get(snapshot.model);
+    let model = snapshot.shown_model();
     let lines = model.into_iter().flat_map(|model| model.config.lines());
     for line in lines.filter(|line| !line.is_empty()) {
         report.fact("model config", line);
@@ -110,7 +110,7 @@ impl Report {
 
 fn opened(report: &mut Report, snapshot: &Snapshot) {
     report.fact("dataset", &snapshot.dataset);
-    match snapshot.models.get(snapshot.model) {
+    match snapshot.shown_model() {
         Some(model) => {
             report.fact("model", &model.name);
             report.fact(
@@ -150,8 +150,7 @@ fn opened(report: &mut Report, snapshot: &Snapshot) {
 fn time(report: &mut Report, snapshot: &Snapshot) {
     let cursor = snapshot.cursor;
     let episode = snapshot.episode.as_deref();
-    let steps = episode.map_or(0, |episode| episode.secs.len());
-    report.fact("step", of(cursor + 1, steps));
+    report.fact("step", of(cursor + 1, snapshot.steps()));
     let secs = episode.and_then(|episode| episode.secs.get(cursor));
     report.number("time", secs.map(|&secs| secs as f32), "s");
     let force = episode.and_then(|episode| episode.force_newtons.get(cursor));

@@ -140,9 +140,7 @@ impl Plane {
         const POINTS: usize = 48;
         let ellipse = Ellipse::of_covariance(estimate.covariance);
         let outline = ellipse.outline([estimate.x, estimate.y], sigmas, POINTS);
-        let closing = outline.first().copied();
-        let points = outline.iter().copied().chain(closing);
-        points.map(|point| self.dot(point)).collect()
+        outline.into_iter().map(|point| self.dot(point)).collect()
     }
 
     /// Whether some of the dots lie outside.
@@ -198,17 +196,7 @@ mod tests {
     use crate::tui::fixture;
 
     fn position() -> PositionView {
-        fixture::snapshot(8, 16)
-            .position
-            .unwrap_or_else(|| PositionView {
-                truth: Arc::default(),
-                tip: Arc::default(),
-                belief: Arc::default(),
-                prediction: Arc::default(),
-                recorded_controls: Arc::default(),
-                belief_error_m: None,
-                prediction_error_m: None,
-            })
+        fixture::snapshot(8, 16).position.unwrap_or_default()
     }
 
     #[test]

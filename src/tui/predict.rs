@@ -16,10 +16,7 @@ use crate::session::snapshot::Snapshot;
 
 /// The steps of the horizon that the episode has: distance from the start, step.
 fn ahead(snapshot: &Snapshot) -> impl Iterator<Item = (usize, usize)> {
-    let steps = snapshot
-        .episode
-        .as_ref()
-        .map_or(0, |episode| episode.secs.len());
+    let steps = snapshot.steps();
     let (start, horizon) = (snapshot.start, snapshot.horizon);
     (0..=horizon)
         .map(move |h| (h, start.saturating_add(h)))

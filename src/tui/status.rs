@@ -35,7 +35,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         );
     }
     at = text(buf, pane, at + 2, 0, &snapshot.dataset, dim());
-    if let Some(model) = snapshot.models.get(snapshot.model) {
+    if let Some(model) = snapshot.shown_model() {
         at = text(buf, pane, at + 2, 0, &model.name, strong());
         if snapshot.models.len() > 1 {
             let of = format!("{}/{}", snapshot.model + 1, snapshot.models.len());

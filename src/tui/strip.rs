@@ -101,15 +101,10 @@ pub fn rows(width: u16, height: u16, steps: usize) -> u16 {
     if grid.side == 0 { 0 } else { grid.pitch * 3 }
 }
 
-fn steps(snapshot: &Snapshot) -> usize {
-    let episode = snapshot.episode.as_ref();
-    episode.map_or(0, |episode| episode.secs.len())
-}
-
 /// The steps of the rollout, and half as many before it.
 fn rollout(snapshot: &Snapshot) -> (usize, usize) {
     let from = snapshot.start.saturating_sub(snapshot.horizon / 2);
-    let until = (snapshot.start + snapshot.horizon + 1).min(steps(snapshot));
+    let until = (snapshot.start + snapshot.horizon + 1).min(snapshot.steps());
     (from.min(until), until)
 }
 
@@ -119,7 +114,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         with_error(buf, pane, snapshot, face);
         return;
     }
-    let grid = Grid::of((pane.width, pane.height), (0, steps(snapshot)), THREE, 1);
+    let grid = Grid::of((pane.width, pane.height), (0, snapshot.steps()), THREE, 1);
     grid.draw(buf, pane, snapshot, face, false);
 }
 

@@ -104,10 +104,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 }
 
 fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
-    let steps = snapshot
-        .episode
-        .as_ref()
-        .map_or(0, |episode| episode.secs.len());
+    let steps = snapshot.steps();
     let mark = if face.is_focused(Pane::Timeline) {
         "▸ step "
     } else {
@@ -170,10 +167,7 @@ fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
 }
 
 fn track(buf: &mut Buffer, pane: Rect, row: u16, axis: Axis, snapshot: &Snapshot, face: &Face) {
-    let first = snapshot
-        .models
-        .get(snapshot.model)
-        .map_or(0, |model| model.frame_stack);
+    let first = snapshot.first_belief();
     let (start, end) = (snapshot.start, snapshot.start + snapshot.horizon);
     let prediction = face.depth.ink(PREDICTION);
     for step in (0..axis.steps).step_by(axis.every) {

@@ -7,7 +7,7 @@ use super::scene::names::{
 };
 use crate::measure::corruption::{Corruption, Damage, applies};
 use crate::modality::Modality;
-use crate::session::command::{Command, Scope};
+use crate::session::command::Command;
 use crate::session::snapshot::Snapshot;
 
 /// What it comes to.
@@ -76,7 +76,7 @@ fn commands(element: &str, value: &Value, snapshot: &Snapshot) -> Option<Vec<Com
     if let (Some(name), Value::Number(severity)) = (element.strip_prefix(SEVERITY), value) {
         let modality = modality(name)?;
         let severity = tenths(*severity).clamp(0.0, 1.0);
-        let now = corruption(modality, snapshot)?;
+        let now = snapshot.corruption_of(modality)?;
         let corruption = Some(Corruption { severity, ..now });
         return Some(vec![Command::Corrupt {
             modality,
@@ -147,34 +147,13 @@ fn damage(modality: Modality, kind: &str, snapshot: &Snapshot) -> Option<Vec<Com
     if !applies(damage, modality) {
         return None;
     }
-    let step = snapshot.cursor;
-    let (from, until) = match snapshot.scope {
-        Scope::Episode => (0, None),
-        Scope::Onward => (step, None),
-        Scope::Frame => (step, Some(step + 1)),
-    };
-    let seed = snapshot.sampling.seed;
-    let new = Corruption {
-        severity: 0.5,
-        from,
-        until,
-        seed,
-        ..Corruption::default()
-    };
-    let now = corruption(modality, snapshot).unwrap_or(new);
+    let now = snapshot.corruption_of(modality);
+    let now = now.unwrap_or_else(|| snapshot.aimed(damage));
     let corruption = Some(Corruption { damage, ..now });
     Some(vec![Command::Corrupt {
         modality,
         corruption,
     }])
-}
-
-fn corruption(modality: Modality, snapshot: &Snapshot) -> Option<Corruption> {
-    let found = snapshot
-        .corruptions
-        .iter()
-        .find(|(damaged, _)| *damaged == modality);
-    found.map(|&(_, corruption)| corruption)
 }
 
 /// A slider's value, as near as its steps are.
@@ -194,6 +173,7 @@ mod tests {
 
     use super::*;
     use crate::session::Session;
+    use crate::session::command::Scope;
     use crate::session::fake::{FakePredictor, FakeSource};
 
     fn session() -> Session {

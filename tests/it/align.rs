@@ -270,8 +270,9 @@ fn a_stream_that_starts_late_or_speaks_once_is_flagged() {
         control: track(&late, |_| [0.0; 2]),
         ..Recording::default()
     };
-    let flags = align(&recording, LAYOUT).unwrap().flags;
-    let said: Vec<_> = flags
+    let episode = align(&recording, LAYOUT).unwrap();
+    let said: Vec<_> = episode
+        .flags
         .iter()
         .map(|flag| (flag.topic.as_str(), flag.stamp_nanos, flag.what.as_str()))
         .collect();
@@ -284,6 +285,8 @@ fn a_stream_that_starts_late_or_speaks_once_is_flagged() {
             ("/control", gap.0, gap.1),
         ]
     );
+    // A gap concerns the step that lacks something.
+    assert_eq!(episode.flagged_steps().collect::<Vec<_>>(), [2, 0, 2]);
 }
 
 #[test]

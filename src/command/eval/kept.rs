@@ -2,10 +2,12 @@
 
 use std::collections::BTreeSet;
 use std::fs::{File, OpenOptions};
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
+
+use crate::model::checkpoint::write_atomic;
 
 use super::scores::{Head, Line, Outcome, Outcomes, Scores};
 
@@ -234,21 +236,13 @@ impl Sink {
         file.write_all(text.as_bytes()).with_context(failed)
     }
 
-    /// Writes all of it anew, beside it first, so that nothing is lost on the way.
+    /// Writes all of it anew, whole or not at all.
     fn rewrite(&mut self, outcomes: &Outcomes) -> anyhow::Result<()> {
-        let beside = self.path.with_extension("part");
-        let failed = || beside.display().to_string();
-        let mut file = BufWriter::new(File::create(&beside).with_context(failed)?);
-        file.write_all(self.head.as_bytes()).with_context(failed)?;
+        let mut text = self.head.clone();
         for (&index, outcome) in outcomes {
-            file.write_all(line(index, outcome)?.as_bytes())
-                .with_context(failed)?;
+            text += &line(index, outcome)?;
         }
-        let file = file
-            .into_inner()
-            .map_err(std::io::IntoInnerError::into_error);
-        file.and_then(|file| file.sync_all()).with_context(failed)?;
-        std::fs::rename(&beside, &self.path).with_context(failed)?;
+        write_atomic(&self.path, text.as_bytes())?;
         self.take_up()
     }
 }

@@ -2,15 +2,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use anyhow::{Context, bail};
 use ratatui::layout::Size;
 
 use crate::cli::ExportArgs;
 use crate::command::open::{self, Opened};
-use crate::export::ExportError;
-use crate::export::drive::{Source, provenance_of};
+use crate::export::drive::{Source, provenance_of, wait};
 use crate::export::output::Output;
 use crate::export::png;
 use crate::session::Session;
@@ -22,15 +20,13 @@ use crate::tui::face::Face;
 use crate::tui::picture;
 use crate::tui::theme::Depth;
 
-/// Time between two looks for an end while the model computes.
-const PATIENCE: Duration = Duration::from_millis(50);
-
 /// Opens, sends the keys, draws; `stop` is set by a signal.
 pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
     if args.split.is_some() || args.episode.len() > 1 || args.steps.is_some() {
         bail!("--figure view is of one moment: --episode names its episode, --state its step too");
     }
     let keys = parse_script(args.keys.as_deref().unwrap_or_default()).context("--keys")?;
+    let stops = || stop.load(Ordering::Relaxed);
     let output = Output::create(&args.out, args.force)?;
     let folders = open::folders(&args.model, args.data.as_ref())?;
     let Opened { dataset, models } =
@@ -43,7 +39,7 @@ pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
     let mut app = App::new(session, face, Size::new(args.size.0, args.size.1));
     if let Some(state) = &args.state {
         app.session.apply(Command::Restore(state.clone()));
-        wait(&mut app.session, stop)?;
+        wait(&mut app.session, stops)?;
         let told = app.session.snapshot().message;
         if let Some(told) = told.filter(|message| message.error) {
             bail!("--state: {}", told.text);
@@ -54,12 +50,12 @@ pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
         app.session.apply(Command::SelectEpisode(episodes[0]));
     }
     for key in &keys {
-        wait(&mut app.session, stop)?;
+        wait(&mut app.session, stops)?;
         if app.press(key) == Flow::Quit {
             bail!("--keys: they quit, so there is nothing to draw");
         }
     }
-    wait(&mut app.session, stop)?;
+    wait(&mut app.session, stops)?;
     let snapshot = app.session.snapshot();
     let drawn = picture(&snapshot, &app.face, args.size);
     let source = Source {
@@ -71,16 +67,4 @@ pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
     facts.insert("state".to_owned(), snapshot.state);
     png::save(output, [drawn.width, drawn.height], &drawn.pixels, &facts)?;
     Ok(())
-}
-
-/// Waits until all that was asked for is computed.
-fn wait(session: &mut Session, stop: &AtomicBool) -> Result<(), ExportError> {
-    loop {
-        if stop.load(Ordering::Relaxed) {
-            return Err(ExportError::Stopped);
-        }
-        if session.wait_idle(PATIENCE) {
-            return Ok(());
-        }
-    }
 }

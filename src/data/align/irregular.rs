@@ -11,11 +11,12 @@ const ROUNDING_NANOS: i64 = 1000;
 /// stream that begins so long after, or ends so long before what it should `cover` (first and last stamp) has a gap
 /// there, too, and a single sample covers nothing.
 pub(super) fn find(topic: &str, stamps: &[i64], cover: (i64, i64), flags: &mut Vec<Flag>) {
-    let mut flag = |stamp_nanos: i64, what: String| {
+    let mut flag = |stamp_nanos: i64, gap: bool, what: String| {
         flags.push(Flag {
             topic: topic.to_owned(),
             stamp_nanos,
             what,
+            gap,
         });
     };
     for pair in stamps.windows(2) {
@@ -23,6 +24,7 @@ pub(super) fn find(topic: &str, stamps: &[i64], cover: (i64, i64), flags: &mut V
         if back > 0 {
             flag(
                 pair[1],
+                false,
                 format!("stamps run backwards by {}", duration(back)),
             );
         }
@@ -34,7 +36,7 @@ pub(super) fn find(topic: &str, stamps: &[i64], cover: (i64, i64), flags: &mut V
     lengths.sort_unstable();
     let Some(&nominal) = lengths.get(lengths.len().saturating_sub(1) / 2) else {
         if let [only] = stamps {
-            flag(*only, "a single sample".to_owned());
+            flag(*only, false, "a single sample".to_owned());
         }
         return;
     };
@@ -51,7 +53,7 @@ pub(super) fn find(topic: &str, stamps: &[i64], cover: (i64, i64), flags: &mut V
     for pair in sorted.windows(2) {
         let length = periods(pair);
         if length > limit {
-            flag(pair[0], format!("gap of {}", duration(length)));
+            flag(pair[0], true, format!("gap of {}", duration(length)));
         }
     }
 }

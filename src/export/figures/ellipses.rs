@@ -34,8 +34,7 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
             let style = style::model(&r.subject, &labels);
             let ellipse = Ellipse::of_covariance(r.covariance_cm2);
             let outline = ellipse.outline(centre.map(|c| c as f32), 1.0, CORNERS);
-            let mut outline: Vec<[f64; 2]> = outline.iter().map(|p| p.map(f64::from)).collect();
-            outline.extend(outline.first().copied());
+            let outline: Vec<[f64; 2]> = outline.iter().map(|p| p.map(f64::from)).collect();
             let arm = 0.03;
             let cross = [[-arm, 0.0], [arm, 0.0], [0.0, 0.0], [0.0, -arm], [0.0, arm]];
             let cross = cross.map(|[x, y]| [centre[0] + x, centre[1] + y]).to_vec();

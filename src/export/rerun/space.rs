@@ -138,7 +138,6 @@ fn ellipses<'a>(
 
 /// The ellipse as a closed line: the viewer's own do not turn.
 fn outline(at: Estimate, sigmas: f32) -> Vec<[f32; 3]> {
-    let mut points = Ellipse::of_covariance(at.covariance).outline([at.x, at.y], sigmas, ROUND);
-    points.extend(points.first().copied());
+    let points = Ellipse::of_covariance(at.covariance).outline([at.x, at.y], sigmas, ROUND);
     points.into_iter().map(|[x, y]| [x, y, ABOVE]).collect()
 }

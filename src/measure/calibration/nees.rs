@@ -66,30 +66,6 @@ pub struct HorizonNees {
     pub verdict: Verdict,
 }
 
-impl HorizonNees {
-    /// The verdict in words: "mean NEES 3.41 where 2 is right [1.78, 2.23], 320 episodes, horizon 5: overconfident".
-    pub fn sentence(&self) -> String {
-        let word = match self.verdict {
-            Verdict::TooFew => format!("too few to say, {FEW} or more are needed"),
-            verdict => verdict.to_string(),
-        };
-        let at = match self.horizon {
-            0 => "filtered".to_owned(),
-            steps => format!("horizon {steps}"),
-        };
-        let Self {
-            episodes,
-            mean,
-            low,
-            high,
-            ..
-        } = self;
-        format!(
-            "mean NEES {mean:.2} where 2 is right [{low:.2}, {high:.2}], {episodes} episodes, {at}: {word}"
-        )
-    }
-}
-
 /// The mean NEES at a horizon with the bounds that hold for as many independent `errors`, one an episode. What has no
 /// NEES is not counted. None where nothing is left.
 pub fn horizon_nees(horizon: usize, errors: &[Error2]) -> Option<HorizonNees> {

@@ -50,7 +50,7 @@ fn copies_beside_an_honest_prior_inflate_as_the_formula_says() {
         };
         let (prior, expert) = (1.0 / world.predictive()[0], 1.0 / world.sensor[0]);
         let outcome = world.last(10_000, 1, 13);
-        let formula = copies_inflation(prior, expert, k);
+        let formula = inflation(prior, expert, k, 1.0);
         assert!((measured(&outcome) / formula - 1.0).abs() < 0.03);
         if k > 1 {
             let found = dependence(&outcome.alone)
@@ -86,7 +86,7 @@ fn a_filter_carries_the_copies_into_its_prior_and_ends_above_the_formula() {
         predicted = a * a * variance + q;
     }
     let outcome = world.last(10_000, 30, 14);
-    let formula = copies_inflation(1.0 / s, 1.0 / r, 3);
+    let formula = inflation(1.0 / s, 1.0 / r, 3, 1.0);
     assert!((measured(&outcome) / (variance / claimed) - 1.0).abs() < 0.03);
     assert!(measured(&outcome) > 1.05 * formula);
 }
@@ -162,7 +162,7 @@ fn what_cannot_be_compared_has_no_correlation() {
          claims a variance 2.0 times too small"
     );
     assert_eq!(found.beside_prior(f64::NAN, 1.0).with_prior, None);
-    assert!(copies_inflation(0.0, 0.0, 2).is_nan() && copies_inflation(-1.0, 2.0, 2).is_nan());
+    assert!(inflation(0.0, 0.0, 2, 1.0).is_nan() && inflation(-1.0, 2.0, 2, 1.0).is_nan());
 }
 
 proptest! {

@@ -10,7 +10,6 @@ use crate::measure::corruption::{Corruption, Damage};
 use crate::modality::Modality;
 use crate::session::command::Command;
 use crate::session::keys::Key;
-use crate::session::prompt::{aimed, kinds};
 use crate::session::snapshot::Snapshot;
 
 /// How far an arrow moves the patch, in parts of the frame.
@@ -33,7 +32,7 @@ impl Input {
         let Some(modality) = self.damaged(snapshot) else {
             return Taken::Not;
         };
-        let now = corruption_of(modality, snapshot);
+        let now = snapshot.corruption_of(modality);
         let corruption = match (key.name(), now) {
             ("<tab>", _) if self.choices(snapshot).len() > 1 => {
                 self.modality += 1;
@@ -43,7 +42,7 @@ impl Input {
             ("@", Some(now)) => Some(Corruption {
                 severity: now.severity,
                 patch: now.patch,
-                ..aimed(now.damage, snapshot)
+                ..snapshot.aimed(now.damage)
             }),
             (_, Some(now)) if adjust::by(key).is_some() => {
                 let tenths = (now.severity * 10.0).round() + adjust::by(key).unwrap_or(0) as f32;
@@ -62,10 +61,7 @@ impl Input {
         };
         Some(Command::Corrupt {
             modality,
-            corruption: corruption.map(|corruption| Corruption {
-                seed: snapshot.sampling.seed,
-                ..corruption
-            }),
+            corruption,
         })
         .into()
     }
@@ -80,7 +76,7 @@ impl Input {
         } else {
             "a digit another"
         };
-        let Some(now) = corruption_of(modality, snapshot) else {
+        let Some(now) = snapshot.corruption_of(modality) else {
             return format!("{name} input: as recorded | x damages it, {another}, Esc ends");
         };
         let patch = if now.damage == Damage::Occlude {
@@ -110,17 +106,14 @@ impl Input {
     }
 }
 
-fn corruption_of(modality: Modality, snapshot: &Snapshot) -> Option<Corruption> {
-    let found = snapshot.corruptions.iter().find(|(m, _)| *m == modality);
-    found.map(|&(_, corruption)| corruption)
-}
-
 /// The next kind, as strong and on the same steps as the one before it; after the last one none.
 fn next(modality: Modality, now: Option<Corruption>, snapshot: &Snapshot) -> Option<Corruption> {
     let Some(now) = now else {
-        return kinds(modality).next().map(|first| aimed(first, snapshot));
+        return Damage::of(modality)
+            .next()
+            .map(|first| snapshot.aimed(first));
     };
-    let damage = kinds(modality)
+    let damage = Damage::of(modality)
         .skip_while(|damage| *damage != now.damage)
         .nth(1)?;
     Some(Corruption { damage, ..now })

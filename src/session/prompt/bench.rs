@@ -1,29 +1,11 @@
 //! Lines that damage inputs, edit controls and choose experts.
 
 use super::{Choice, split};
-use crate::measure::corruption::{Corruption, Damage, applies};
-use crate::modality::Modality;
+use crate::measure::corruption::Damage;
 use crate::session::command::Command;
 use crate::session::settings::{ControlEdit, SCALES};
 use crate::session::snapshot::Snapshot;
 use crate::session::state::names;
-use crate::session::switches::Reach;
-
-/// Severity of a damage that says nothing else.
-const HALF: f32 = 0.5;
-
-/// A new corruption as the scope at the cursor has it.
-pub(in crate::session) fn aimed(damage: Damage, snapshot: &Snapshot) -> Corruption {
-    let Reach { from, until } = Reach::of(snapshot.scope, snapshot.cursor);
-    Corruption {
-        damage,
-        severity: HALF,
-        from,
-        until,
-        patch: [0.5; 2],
-        seed: snapshot.sampling.seed,
-    }
-}
 
 /// `vision noise`, `haptic hold 0.3`, `proprio none`.
 pub(super) fn corrupt(text: &str, snapshot: &Snapshot) -> Option<Command> {
@@ -36,8 +18,8 @@ pub(super) fn corrupt(text: &str, snapshot: &Snapshot) -> Option<Command> {
             corruption: None,
         });
     }
-    let damage = kinds(modality).find(|damage| damage.name() == kind)?;
-    let mut corruption = aimed(damage, snapshot);
+    let damage = Damage::of(modality).find(|damage| damage.name() == kind)?;
+    let mut corruption = snapshot.aimed(damage);
     if !severity.is_empty() {
         let severity = severity.parse().ok();
         corruption.severity = severity.filter(|s| (0.0..=1.0).contains(s))?;
@@ -51,27 +33,14 @@ pub(super) fn corrupt(text: &str, snapshot: &Snapshot) -> Option<Command> {
 
 /// What there is to damage, and how.
 pub(super) fn corruptions(snapshot: &Snapshot) -> Vec<Choice> {
-    let experts = snapshot.experts.iter();
-    let mut modalities: Vec<Modality> = experts
-        .flat_map(|view| view.expert.modalities())
-        .copied()
-        .collect();
-    modalities.sort_unstable();
-    modalities.dedup();
-    let all = modalities.into_iter().flat_map(|modality| {
+    let all = snapshot.modalities().flat_map(|modality| {
         let name = modality.name();
-        let kinds = kinds(modality).map(Damage::name).chain(["none"]);
+        let kinds = Damage::of(modality).map(Damage::name).chain(["none"]);
         kinds
             .map(|kind| (format!("{name} {kind}"), ""))
             .collect::<Vec<_>>()
     });
     all.collect()
-}
-
-/// How a modality can be damaged; only a picture has something to lie in front of.
-pub(in crate::session) fn kinds(modality: Modality) -> impl Iterator<Item = Damage> {
-    let fits = move |damage: &Damage| applies(*damage, modality);
-    Damage::ALL.into_iter().filter(fits)
 }
 
 /// `turn 30`, `scale 0.5`, `mirror`, `stop`, `recorded`: of the edit there is, else from the cursor on.

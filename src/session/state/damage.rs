@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::names;
 use super::reach;
-use crate::measure::corruption::{Corruption, Damage};
+use crate::measure::corruption::{Corruption, Damage, applies};
 use crate::modality::Modality;
 use crate::session::switches::Reach;
 
@@ -46,7 +46,7 @@ fn entry(text: &str) -> Option<(Modality, Corruption)> {
     let (modality, rest) = text.split_once(':')?;
     let modality = names::modality(modality).ok()?;
     let (damage, rest) = rest.split_once(':')?;
-    let damage = Damage::ALL.into_iter().find(|d| d.name() == damage)?;
+    let damage = Damage::from_name(damage)?;
     let (rest, patch) = match rest.split_once(':') {
         None => (rest, [0.5; 2]),
         Some((rest, patch)) if damage == Damage::Occlude => {
@@ -64,8 +64,7 @@ fn entry(text: &str) -> Option<(Modality, Corruption)> {
         patch,
         seed: 0,
     };
-    let fits = damage != Damage::Occlude || modality == Modality::Vision;
-    fits.then_some((modality, corruption))
+    applies(damage, modality).then_some((modality, corruption))
 }
 
 /// A number from 0 to 1.

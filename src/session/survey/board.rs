@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use super::score::{Sheet, error};
+use super::score::Sheet;
 use crate::episode::Split;
 use crate::measure::calibration::{
     Error2, HorizonNees, calibration, horizon_nees, nees, nll as nll_of,
 };
 use crate::measure::correlation::{dependence, dependence_beyond};
 use crate::measure::gaussian::{Factor, Gaussian};
-use crate::measure::spread::{diagonal, plane, propagate};
+use crate::measure::spread::{diagonal, plane};
 use crate::measure::tempering::{FittedAlpha, fit_alpha};
 use crate::modality::Expert;
 use crate::session::predict::Predictor;
@@ -80,11 +80,8 @@ impl Board {
         let at = position(predictor, posterior)?;
         let residual = predictor.position_residual()?;
         self.residual = residual;
-        let off = error(Some(truth_m), at)?;
-        self.bare.push(Error2 {
-            covariance: std::array::from_fn(|i| at.covariance[i] - residual[i]),
-            ..off
-        });
+        let off = at.error(truth_m);
+        self.bare.push(off.beside(residual.map(|r| -r)));
         push(&mut self.by_head, 0, off);
         push(&mut self.by_propagation, 0, off);
         let weights = predictor.position_weights()?;
@@ -104,7 +101,7 @@ impl Board {
                 continue;
             };
             let alone = position(predictor, factor.gaussian)?;
-            let error_m = [truth_m[0] - alone.x, truth_m[1] - alone.y];
+            let error_m = alone.error(truth_m).error_m;
             match self.single.iter_mut().find(|(e, _)| *e == expert) {
                 Some((_, errors)) => errors.push(error_m),
                 None => self.single.push((expert, vec![error_m])),
@@ -112,14 +109,10 @@ impl Board {
         }
         let controls = inferred.controls(rollout, None).ok()?;
         let rolled = predictor.rollout(&inferred.beliefs, from, &controls).ok()?;
-        let mut covariance = diagonal(posterior.log_var);
-        let size = info.latent * info.latent;
-        for step in 0..rolled.gaussians.len() {
+        for (step, covariance) in rolled.covariances(posterior.log_var).enumerate() {
             let (mean, log_var) = rolled.gaussians.row(step);
-            let transition = rolled.transitions.get(step * size..(step + 1) * size)?;
-            covariance = propagate(transition, &covariance, log_var);
             let at = position(predictor, Gaussian { mean, log_var })?;
-            let off = error(sheet.truth_m(rollout.start + 1 + step), at)?;
+            let off = at.error(sheet.truth_m(rollout.start + 1 + step)?);
             let plane = plane(weights, &covariance)?;
             let propagated = Error2 {
                 covariance: std::array::from_fn(|i| plane[i] + residual[i]),
@@ -265,7 +258,7 @@ pub fn fit(
             for step in 0..sheet.steps {
                 let off = inferred.belief_at(step).and_then(|belief| {
                     let at = position(predictor, inferred.posterior(belief))?;
-                    error(sheet.truth_m(step), at)
+                    Some(at.error(sheet.truth_m(step)?))
                 });
                 if let Some(nll) = off.as_ref().and_then(nll_of) {
                     sum += nll;

@@ -14,7 +14,6 @@ use crate::model::trace::{Alphas, ExpertTrace, GaussianTrace};
 use crate::session::known::Known;
 use crate::session::predict::Predictor;
 use crate::session::settings::Settings;
-use crate::session::snapshot::Estimate;
 use crate::session::snapshot::table::EpisodeScore;
 use crate::session::worker::{Inferred, infer};
 
@@ -90,15 +89,6 @@ impl Sheet {
     }
 }
 
-/// How far an estimate is off, with what it claims; none without a recorded pose.
-pub fn error(truth_m: Option<[f32; 2]>, at: Estimate) -> Option<Error2> {
-    let [x, y] = truth_m?;
-    Some(Error2 {
-        error_m: [x - at.x, y - at.y],
-        covariance: at.covariance,
-    })
-}
-
 fn distance_m(error: &Error2) -> f32 {
     error.error_m[0].hypot(error.error_m[1])
 }
@@ -146,14 +136,18 @@ pub fn score(sheet: &Sheet, predictor: &dyn Predictor) -> Result<EpisodeScore, S
         let squared = sheet.frames.get(step).and_then(|t| squared_error(frame, t));
         scores.error = squared.map(|error| error as f32);
         let position = at(step).and_then(|(mean, log_var)| predictor.position(mean, log_var));
-        let off = position.and_then(|at| error(sheet.truth_m(step), at));
+        let off = position
+            .zip(sheet.truth_m(step))
+            .map(|(at, truth)| at.error(truth));
         scores.distance_m = off.as_ref().map(distance_m);
         let Some(belief) = inferred.belief_at(step) else {
             continue;
         };
         let posterior = inferred.posterior(belief);
         let position = predictor.position(posterior.mean, posterior.log_var);
-        let off = position.and_then(|at| error(sheet.truth_m(step), at));
+        let off = position
+            .zip(sheet.truth_m(step))
+            .map(|(at, truth)| at.error(truth));
         let epsilon = off.as_ref().and_then(nees);
         scores.nees = epsilon.map(|epsilon| epsilon as f32);
         scores.escape = epsilon.filter(|&epsilon| epsilon > outside).map(|_| step);

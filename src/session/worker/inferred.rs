@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::memo::RolloutKey;
 use super::noise;
-use crate::measure::fusion::{mean_share, precision_shares};
+use crate::measure::fusion::{mean_share, position_shares, precision_shares};
 use crate::measure::gaussian::{Factor, Gaussian};
 use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
 use crate::session::predict::{PredictError, Predictor};
@@ -62,11 +62,7 @@ fn complete(
     };
     let mut over_time = vec![vec![f32::NAN; steps]; inferred.alphas.experts];
     for belief in 0..count {
-        let factors = inferred.factors(belief);
-        let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
-        let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
-        let shares = precision_shares(&alphas, &log_vars);
-        for (row, share) in over_time.iter_mut().zip(shares) {
+        for (row, share) in over_time.iter_mut().zip(inferred.shares(belief)) {
             row[belief + info.frame_stack] = mean_share(&share);
         }
     }
@@ -120,6 +116,21 @@ impl Inferred {
             prior.alpha = 0.0;
         }
         factors
+    }
+
+    /// Each expert's share of a belief's precision per latent dimension, the prior last (D1).
+    pub fn shares(&self, belief: usize) -> Vec<Vec<f32>> {
+        let factors = self.factors(belief);
+        let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
+        let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
+        precision_shares(&alphas, &log_vars)
+    }
+
+    /// The same weighted by what moves the position that a probe's `weights` read; none where they read nothing.
+    pub fn position_shares(&self, belief: usize, weights: &[f32]) -> Option<Vec<f32>> {
+        let log_var = self.posterior(belief).log_var;
+        let variance: Vec<f32> = log_var.iter().map(|v| v.exp()).collect();
+        position_shares(&self.shares(belief), weights, &variance)
     }
 
     /// The prediction before a belief's observations.

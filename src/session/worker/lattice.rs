@@ -136,9 +136,7 @@ impl Lattice {
                     .map(|error| error as f32),
                 psnr_db: compared.and_then(|(frame, truth)| psnr_db(frame, truth)),
                 frame,
-                position_error_m: position
-                    .zip(truth)
-                    .map(|(at, truth)| (at.x - truth.x).hypot(at.y - truth.y)),
+                position_error_m: position.zip(truth).map(|(at, truth)| at.distance_m(*truth)),
                 position,
                 episode_rmse_m: set.rmse_m,
                 ellipse_m2: ellipse.map(|e| std::f32::consts::PI * e.major * e.minor),

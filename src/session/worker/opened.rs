@@ -47,16 +47,7 @@ impl Opened {
             force_newtons,
             push_newtons: (0..steps).map_while(|t| episode.push_newtons(t)).collect(),
             flags: episode.oddities().collect(),
-            flagged_steps: episode
-                .flags
-                .iter()
-                .map(|flag| {
-                    episode
-                        .steps_nanos
-                        .partition_point(|&step| step <= flag.stamp_nanos)
-                        .saturating_sub(1)
-                })
-                .collect(),
+            flagged_steps: episode.flagged_steps().collect(),
             missing,
         };
         Self {

@@ -7,9 +7,8 @@ use super::memo::BeliefKey;
 use super::opened::Opened;
 use crate::measure::active::LatentStats;
 use crate::measure::attribution::attribution;
-use crate::measure::calibration::{Error2, nees};
+use crate::measure::calibration::nees;
 use crate::measure::divergence::kl_parts;
-use crate::measure::fusion::{position_shares, precision_shares};
 use crate::measure::gaussian::Factor;
 use crate::measure::innovation::{conflict, disagreements, nis, predicted_covariance};
 use crate::measure::leave_one_out::without;
@@ -202,13 +201,8 @@ impl Reader<'_> {
     }
 
     fn position_shares(&self, belief: usize) -> Option<Vec<f32>> {
-        let factors = self.inferred.factors(belief);
-        let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
-        let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
-        let log_var = self.inferred.posterior(belief).log_var;
-        let variance: Vec<f32> = log_var.iter().map(|v| v.exp()).collect();
-        let shares = precision_shares(&alphas, &log_vars);
-        position_shares(&shares, self.predictor.position_weights()?, &variance)
+        let weights = self.predictor.position_weights()?;
+        self.inferred.position_shares(belief, weights)
     }
 
     /// NEES of the position with R_p and without (D11); NaN where there is none.
@@ -217,15 +211,9 @@ impl Reader<'_> {
         let Some(at) = self.predictor.position(posterior.mean, posterior.log_var) else {
             return [f32::NAN; 2];
         };
-        let error_m = [truth[0] - at.x, truth[1] - at.y];
         let residual = self.predictor.position_residual().unwrap_or_default();
-        let bare = std::array::from_fn(|i| at.covariance[i] - residual[i]);
-        [at.covariance, bare].map(|covariance| {
-            let error = Error2 {
-                error_m,
-                covariance,
-            };
-            nees(&error).map_or(f32::NAN, |value| value as f32)
-        })
+        let off = at.error(truth);
+        [off, off.beside(residual.map(|r| -r))]
+            .map(|error| nees(&error).map_or(f32::NAN, |value| value as f32))
     }
 }

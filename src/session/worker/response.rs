@@ -7,9 +7,9 @@ use super::inferred::{Inferred, infer};
 use super::memo::BeliefKey;
 use super::opened::Opened;
 use crate::episode::Episode;
-use crate::measure::calibration::{Error2, nees};
+use crate::measure::calibration::nees;
 use crate::measure::corruption::{Corruption, corrupt};
-use crate::measure::fusion::{mean_share, precision_shares};
+use crate::measure::fusion::mean_share;
 use crate::modality::{Expert, Modality};
 use crate::session::predict::Predictor;
 use crate::session::snapshot::response::ResponseView;
@@ -105,23 +105,14 @@ impl Reading {
             let Some(belief) = inferred.belief_at(step) else {
                 continue;
             };
-            let factors = inferred.factors(belief);
-            let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
-            let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
-            shares.extend(
-                precision_shares(&alphas, &log_vars)
-                    .get(position)
-                    .map(|share| mean_share(share)),
-            );
+            let all = inferred.shares(belief);
+            shares.extend(all.get(position).map(|share| mean_share(share)));
             let posterior = inferred.posterior(belief);
             let at = predictor.position(posterior.mean, posterior.log_var);
             let Some((at, truth)) = at.zip(opened.poses.get(step)) else {
                 continue;
             };
-            let error = Error2 {
-                error_m: [truth.x - at.x, truth.y - at.y],
-                covariance: at.covariance,
-            };
+            let error = at.error([truth.x, truth.y]);
             squares.push(error.error_m[0].powi(2) + error.error_m[1].powi(2));
             epsilons.extend(nees(&error).map(|epsilon| epsilon as f32));
         }

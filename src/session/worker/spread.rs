@@ -8,7 +8,7 @@ use super::noise;
 use super::opened::Opened;
 use crate::episode::Frame;
 use crate::measure::samples::{blur_index, mean_frame, spread_frame};
-use crate::measure::spread::{diagonal, plane, propagate, sample_covariance};
+use crate::measure::spread::{diagonal, plane, sample_covariance};
 use crate::session::predict::{PredictError, Predictor};
 use crate::session::snapshot::spread::{SampleFrames, SpreadView};
 
@@ -62,12 +62,9 @@ impl Spread {
             ..SpreadView::default()
         };
         let weights = predictor.position_weights();
-        let mut covariance = diagonal(inferred.posterior(from).log_var);
-        for step in 0..rolled.gaussians.len() {
-            let (mean, log_var) = rolled.gaussians.row(step);
-            let size = latent * latent;
-            let transition = &rolled.transitions[step * size..(step + 1) * size];
-            covariance = propagate(transition, &covariance, log_var);
+        let start = inferred.posterior(from).log_var;
+        for (step, covariance) in rolled.covariances(start).enumerate() {
+            let log_var = rolled.gaussians.row(step).1;
             let samples = Samples {
                 latents: &latents,
                 latent,
@@ -91,7 +88,6 @@ impl Spread {
             for (path, at) in view.fan.iter_mut().zip(positions) {
                 path.push(at);
             }
-            debug_assert_eq!(mean.len(), latent);
         }
         Ok(Self {
             view,

@@ -15,7 +15,7 @@ use ratatui::style::Style;
 
 use crate::episode::Frame;
 use crate::measure::frame::ERROR_RANGE;
-use crate::modality::Modality;
+use crate::modality::Expert;
 use crate::session::model_key;
 use crate::session::snapshot::{Badge, ErrorOf, FrameRow, SignedFrame, Snapshot, StepPsnr};
 use crate::tui::compare::{Compare, wiped};
@@ -173,14 +173,12 @@ fn prediction(row: &FrameRow, snapshot: &Snapshot, face: &Face) -> Slot {
 
 /// What the model sees instead of the truth.
 fn input(frame: &Arc<Frame>, snapshot: &Snapshot, face: &Face) -> Slot {
-    let damage = snapshot.corruptions.iter().find(|(modality, corruption)| {
-        *modality == Modality::Vision && corruption.acts_at(snapshot.cursor)
-    });
+    let damage = snapshot.damage_of(Expert::Vision);
     Slot {
         name: "input".to_owned(),
         // A frame before may be the damaged one: frames are stacked.
         notes: damage
-            .map(|(_, corruption)| damage_badge(corruption))
+            .map(|(_, corruption)| damage_badge(&corruption))
             .into_iter()
             .collect(),
         style: strong().patch(face.depth.ink(WARNING)),
@@ -272,8 +270,7 @@ fn unknown(snapshot: &Snapshot) -> String {
 }
 
 fn no_belief(snapshot: &Snapshot) -> String {
-    let model = snapshot.models.get(snapshot.model);
-    let first = model.map_or(0, |model| model.frame_stack);
+    let first = snapshot.first_belief();
     if snapshot.cursor < first {
         format!("from step {}", first + 1)
     } else {

@@ -21,10 +21,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
 
 /// Why a model with a product has no reading at this step, in a few words.
 pub fn why(snapshot: &Snapshot) -> String {
-    let first = snapshot
-        .models
-        .get(snapshot.model)
-        .map_or(0, |model| model.frame_stack);
+    let first = snapshot.first_belief();
     if snapshot.cursor < first {
         format!("no belief before step {}", first + 1)
     } else if snapshot.busy {
@@ -35,7 +32,7 @@ pub fn why(snapshot: &Snapshot) -> String {
 }
 
 fn no_product(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot) {
-    let model = snapshot.models.get(snapshot.model);
+    let model = snapshot.shown_model();
     let Some(model) = model else {
         text(buf, pane, 0, 0, "no model is open", dim());
         return;

@@ -42,10 +42,7 @@ struct Row<'a> {
 
 /// Draws as many rows as there is room for, the shares first.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
-    let steps = snapshot
-        .episode
-        .as_ref()
-        .map_or(0, |episode| episode.secs.len());
+    let steps = snapshot.steps();
     let axis = Axis::of(pane.width, steps);
     let series = match &snapshot.series {
         Some(series) if steps > 0 => series,

@@ -15,7 +15,7 @@ use super::super::face::Face;
 use super::super::paint::{put, right, text};
 use super::super::theme::{WARNING, dim, strong};
 use crate::modality::{Expert, Modality};
-use crate::session::snapshot::{EpisodeView, EventKind, Snapshot};
+use crate::session::snapshot::{EventKind, Snapshot};
 
 /// The symbols of each step that has some, the most important first.
 pub fn symbols(snapshot: &Snapshot, step: usize) -> Vec<char> {
@@ -27,7 +27,7 @@ pub fn symbols(snapshot: &Snapshot, step: usize) -> Vec<char> {
     let is_flagged = snapshot
         .episode
         .as_ref()
-        .is_some_and(|episode| flagged(episode).any(|flagged| flagged == step));
+        .is_some_and(|episode| episode.flagged_steps.contains(&step));
     let all = [
         (is_flagged, '!'),
         (has(EventKind::Mark), '*'),
@@ -36,16 +36,6 @@ pub fn symbols(snapshot: &Snapshot, step: usize) -> Vec<char> {
     all.into_iter()
         .filter_map(|(is, symbol)| is.then_some(symbol))
         .collect()
-}
-
-/// The steps that flags speak of. A gap is stamped with the last sample before it; what is missing is missing from the
-/// window of the step after that.
-fn flagged(episode: &EpisodeView) -> impl Iterator<Item = usize> {
-    let last = episode.secs.len().saturating_sub(1);
-    std::iter::zip(&episode.flagged_steps, &episode.flags).map(move |(&step, flag)| {
-        let missing = flag.contains(": gap of ");
-        (step + usize::from(missing)).min(last)
-    })
 }
 
 /// The modalities whose input is damaged at a step.
@@ -162,17 +152,11 @@ mod tests {
     }
 
     #[test]
-    fn a_flag_of_a_gap_marks_the_step_that_lacks_something() {
+    fn flags_mark_their_steps() {
         let mut snapshot = fixture::snapshot(6, 16);
         snapshot.events = Arc::default();
         let mut episode = (**snapshot.episode.as_ref().unwrap()).clone();
-        episode.flags = [
-            "/wrench at 1.2 s: gap of 0.9 s",
-            "/tf at 2.0 s: stamps run backwards by 1.0 s",
-        ]
-        .map(str::to_owned)
-        .to_vec();
-        episode.flagged_steps = vec![4, 7];
+        episode.flagged_steps = vec![5, 7];
         snapshot.episode = Some(Arc::new(episode));
         assert_eq!(drawn(&snapshot, 31), "events      ! !");
     }

@@ -2,21 +2,16 @@
 
 use super::names::{AS_RECORDED, DAMAGE, SEVERITY, damage};
 use super::panel::{Panel, Range};
-use crate::measure::corruption::{Damage, applies};
-use crate::modality::{Expert, Modality};
+use crate::measure::corruption::Damage;
 use crate::session::snapshot::Snapshot;
 
 /// Adds the folder.
 pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
     panel.folder("damage", "Damaged inputs", false);
-    for modality in looked_at(snapshot) {
+    for modality in snapshot.modalities() {
         let name = modality.name();
-        let found = snapshot
-            .corruptions
-            .iter()
-            .find(|(damaged, _)| *damaged == modality);
-        let now = found.map(|(_, corruption)| corruption);
-        let kinds = kinds(modality).map(|kind| kind.name().to_owned());
+        let now = snapshot.corruption_of(modality);
+        let kinds = Damage::of(modality).map(|kind| kind.name().to_owned());
         let options = std::iter::once(AS_RECORDED.to_owned())
             .chain(kinds)
             .collect();
@@ -43,19 +38,4 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
             now.is_some(),
         );
     }
-}
-
-/// What the present model's experts look at.
-fn looked_at(snapshot: &Snapshot) -> impl Iterator<Item = Modality> {
-    let experts = snapshot.experts.iter().map(|view| view.expert);
-    let seen: Vec<Modality> = experts.flat_map(Expert::modalities).copied().collect();
-    Modality::ALL
-        .into_iter()
-        .filter(move |modality| seen.contains(modality))
-}
-
-/// Kinds of damage that a modality can have.
-fn kinds(modality: Modality) -> impl Iterator<Item = Damage> {
-    let all = Damage::ALL.into_iter();
-    all.filter(move |&kind| applies(kind, modality))
 }

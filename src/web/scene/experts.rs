@@ -58,12 +58,8 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
 
 /// Whether the present model lets this expert be switched.
 pub fn switchable(snapshot: &Snapshot, expert: Expert) -> bool {
-    let model = snapshot.models.get(snapshot.model);
-    model.is_some_and(|model| {
-        let sensors = model.experts.len();
-        let factors = sensors + usize::from(model.prior_expert);
-        factors > 1 && (expert != Expert::Prior || model.prior_expert)
-    })
+    let model = snapshot.shown_model();
+    model.is_some_and(|model| model.can_switch(expert))
 }
 
 /// An `f32` as the decimal that it was typed as.

@@ -26,7 +26,7 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
     let model = models.get(snapshot.model).cloned().unwrap_or_default();
     panel.dropdown("model", ("Model", "Keys: ( and )"), &model, models);
 
-    let steps = steps(snapshot);
+    let steps = snapshot.steps();
     let step = (snapshot.cursor + 1) as f64;
     panel.slider(
         "step",
@@ -51,14 +51,6 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
     let (done, of) = (snapshot.table.scored, snapshot.table.rows.len());
     let percent = 100.0 * done as f64 / of.max(1) as f64;
     panel.progress("progress", percent, snapshot.table.asked && done < of);
-}
-
-/// Steps of the open episode.
-pub fn steps(snapshot: &Snapshot) -> usize {
-    snapshot
-        .episode
-        .as_ref()
-        .map_or(0, |episode| episode.secs.len())
 }
 
 fn status(snapshot: &Snapshot) -> String {

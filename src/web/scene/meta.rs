@@ -3,7 +3,6 @@
 use serde_json::{Value, json};
 
 use super::experts::switchable;
-use super::head::steps;
 use super::panel::Panel;
 use crate::episode::Split;
 use crate::session::keymap::{Binding, FaceCommand, Meaning, bindings};
@@ -76,7 +75,7 @@ fn meta(snapshot: &Snapshot, read_only: bool) -> Value {
             "missing": episode.missing,
         })),
         "step": cursor,
-        "steps": steps(snapshot),
+        "steps": snapshot.steps(),
         "secs": episode.and_then(|episode| episode.secs.get(cursor)),
         "playing": snapshot.playing,
         "speed": snapshot.speed,
@@ -125,7 +124,7 @@ fn meta(snapshot: &Snapshot, read_only: bool) -> Value {
 }
 
 fn model(snapshot: &Snapshot) -> Option<Value> {
-    let model = snapshot.models.get(snapshot.model)?;
+    let model = snapshot.shown_model()?;
     Some(json!({
         "index": snapshot.model,
         "count": snapshot.models.len(),
@@ -144,13 +143,6 @@ fn experts(snapshot: &Snapshot) -> Vec<Value> {
         .map(|fusion| fusion.experts.as_slice())
         .unwrap_or_default();
     let last = snapshot.experts.len().saturating_sub(1);
-    let damaged = |view: &ExpertView| {
-        let sees = view.expert.modalities();
-        let mut corruptions = snapshot.corruptions.iter();
-        corruptions.any(|(modality, corruption)| {
-            sees.contains(modality) && corruption.acts_at(snapshot.cursor)
-        })
-    };
     let one = |(place, view): (usize, &ExpertView)| {
         let reading = readings.get(place);
         let (r, g, b) = view.expert.rgb();
@@ -162,7 +154,7 @@ fn experts(snapshot: &Snapshot) -> Vec<Value> {
             "color": format!("#{r:02X}{g:02X}{b:02X}"),
             "fill": view.expert.fill(),
             "alpha": view.alpha,
-            "damaged": damaged(view),
+            "damaged": snapshot.damage_of(view.expert).is_some(),
             "switchable": switchable(snapshot, view.expert),
             "share": view.share,
             "share_mean": view.share_mean,

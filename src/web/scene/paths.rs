@@ -37,15 +37,7 @@ const FACES: [[u32; 3]; 8] = [
 
 /// Adds them.
 pub fn add(nodes: &mut Nodes, snapshot: &Snapshot) {
-    let empty = PositionView {
-        truth: Vec::new().into(),
-        tip: Vec::new().into(),
-        belief: Vec::new().into(),
-        prediction: Vec::new().into(),
-        recorded_controls: Vec::new().into(),
-        belief_error_m: None,
-        prediction_error_m: None,
-    };
+    let empty = PositionView::default();
     let position = snapshot.position.as_ref().unwrap_or(&empty);
     let truth: Vec<Point> = position
         .truth
@@ -129,7 +121,6 @@ fn broken(path: &[Point], part: f32) -> Vec<[Point; 2]> {
 /// A closed outline.
 fn outline(estimate: &Estimate, sigmas: f32) -> Vec<Point> {
     let ellipse = Ellipse::of_covariance(estimate.covariance);
-    let mut outline = ellipse.outline([estimate.x, estimate.y], sigmas, ROUND);
-    outline.extend(outline.first().copied());
+    let outline = ellipse.outline([estimate.x, estimate.y], sigmas, ROUND);
     outline.into_iter().map(|[x, y]| [x, y, ABOVE]).collect()
 }

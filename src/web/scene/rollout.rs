@@ -1,13 +1,12 @@
 //! What is predicted from what.
 
-use super::head::steps;
 use super::panel::{Panel, Range};
 use crate::session::snapshot::Snapshot;
 
 /// Adds the folder.
 pub fn add(panel: &mut Panel, snapshot: &Snapshot, spread: bool) {
     panel.folder("rollout", "Prediction", true);
-    let most = steps(snapshot).max(snapshot.context).max(1);
+    let most = snapshot.steps().max(snapshot.context).max(1);
     let range = Range::whole(1, most);
     let hint = "Images seen before the prediction";
     panel.slider(
@@ -17,7 +16,7 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot, spread: bool) {
         range,
         true,
     );
-    let range = Range::whole(1, steps(snapshot).max(snapshot.horizon).max(1));
+    let range = Range::whole(1, snapshot.steps().max(snapshot.horizon).max(1));
     let hint = "Images predicted";
     panel.slider(
         "horizon",

@@ -3,10 +3,9 @@
 use super::{BELIEF, Chart, PREDICTION, line};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 use crate::web::protocol::uplot::{Series, UplotProps};
-use crate::web::scene::head::steps;
 
 pub fn position(snapshot: &Snapshot) -> UplotProps {
-    let mut chart = Chart::over_steps(steps(snapshot));
+    let mut chart = Chart::over_steps(snapshot.steps());
     if let Some(position) = &snapshot.position {
         let (belief, prediction) = (&position.belief, &position.prediction);
         let claims = belief
@@ -33,7 +32,7 @@ pub fn position(snapshot: &Snapshot) -> UplotProps {
 }
 
 pub fn psnr(snapshot: &Snapshot) -> UplotProps {
-    let mut chart = Chart::over_steps(steps(snapshot));
+    let mut chart = Chart::over_steps(snapshot.steps());
     let value = |value: Option<f32>| value.map_or(f64::NAN, f64::from);
     let belief: Vec<f64> = snapshot
         .psnr_db
@@ -56,7 +55,7 @@ pub fn distances_cm<'a>(
     estimates.iter().enumerate().map(|(step, estimate)| {
         let both = estimate.zip(position.truth.get(step));
         both.map_or(f64::NAN, |(estimate, truth)| {
-            100.0 * f64::from((estimate.x - truth.x).hypot(estimate.y - truth.y))
+            100.0 * f64::from(estimate.distance_m(*truth))
         })
     })
 }

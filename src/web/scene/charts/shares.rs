@@ -3,10 +3,9 @@
 use super::{Chart, dashes, ink, line, wash};
 use crate::session::snapshot::Snapshot;
 use crate::web::protocol::uplot::{Series, UplotProps};
-use crate::web::scene::head::steps;
 
 pub fn chart(snapshot: &Snapshot) -> UplotProps {
-    let mut chart = Chart::over_steps(steps(snapshot));
+    let mut chart = Chart::over_steps(snapshot.steps());
     let mut sum: Vec<f64> = Vec::new();
     let mut below = None;
     for (place, view) in snapshot.experts.iter().enumerate() {
