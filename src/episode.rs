@@ -131,7 +131,7 @@ pub struct Flag {
     pub stamp_nanos: i64,
     /// What: "gap of 1.2 s", "stamps run backwards".
     pub what: String,
-    /// Whether samples are missing behind the stamp.
+    /// Whether samples are missing after the stamp.
     pub gap: bool,
 }
 
@@ -217,12 +217,12 @@ impl Episode {
     pub fn flagged_steps(&self) -> impl Iterator<Item = usize> {
         let last = self.steps().saturating_sub(1);
         self.flags.iter().map(move |flag| {
-            let reached = |&step: &i64| step <= flag.stamp_nanos;
-            let behind = self.steps_nanos.partition_point(reached);
+            let is_reached = |&step: &i64| step <= flag.stamp_nanos;
+            let reached = self.steps_nanos.partition_point(is_reached);
             if flag.gap {
-                behind.min(last)
+                reached.min(last)
             } else {
-                behind.saturating_sub(1)
+                reached.saturating_sub(1)
             }
         })
     }

@@ -306,7 +306,7 @@ impl Session {
         self.models.get(self.target.model)
     }
 
-    /// The first step, from 0, at which it has a belief.
+    /// The first step, from 0, at which the model has a belief.
     fn first_belief(&self) -> usize {
         self.model().map_or(0, |model| model.frame_stack)
     }
@@ -466,6 +466,7 @@ fn goes_elsewhere(command: &Command) -> bool {
             | Command::SeekClamped(_)
             | Command::First
             | Command::Last
+            | Command::FirstPredicted
             | Command::Event(_)
             | Command::Episode(_)
             | Command::SelectEpisode(_)

@@ -25,7 +25,7 @@ pub struct ViewArgs {
     /// State string to start from, as copied with `y`
     #[arg(long)]
     pub state: Option<String>,
-    /// Keys to send first: plain characters, names in angle brackets (`<space>`), blanks ignored
+    /// Keys to send first, from the first step on: plain characters, names in angle brackets (`<space>`), blanks ignored
     #[arg(long)]
     pub keys: Option<String>,
     /// Draw one frame to standard output and exit

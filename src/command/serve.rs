@@ -54,7 +54,7 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     if let Some(state) = args.state {
         session.apply(Command::Restore(state));
     } else {
-        view::first_look(&mut session);
+        session.apply(Command::FirstPredicted);
     }
     let options = Options {
         address,

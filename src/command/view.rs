@@ -20,7 +20,6 @@ use self::report::Report;
 use super::open::{self, Opened};
 use super::{say, serve};
 use crate::cli::{Colors, ImageProtocol, ViewArgs};
-use crate::measure::protocol::Protocol;
 use crate::session::Session;
 use crate::session::command::Command;
 use crate::session::keys::{Key, parse_script};
@@ -67,7 +66,7 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
     if let Some(cache) = cache::Folder::of_user() {
         app.session.keep_scores_in(Arc::new(cache));
     }
-    let stateful = args.state.is_some();
+    let has_state = args.state.is_some();
     if let Some(state) = args.state {
         app.session.apply(Command::Restore(state));
         if args.serve.is_some() {
@@ -82,8 +81,8 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
             }
         }
     }
-    if !stateful && args.keys.is_none() && matches!(report, None | Some(Report::Frame)) {
-        first_look(&mut app.session);
+    if !has_state && args.keys.is_none() {
+        app.session.apply(Command::FirstPredicted);
     }
     if send(&mut app, &keys)? == Flow::Quit {
         return Ok(());
@@ -143,12 +142,6 @@ fn announce(session: &mut Session, url: &str, rerun: Option<&str>) {
         error: false,
         text: format!("also at {url}{stream}"),
     });
-}
-
-/// Goes to the first predicted step: a screen on which truth, belief and prediction have something to show. A state or
-/// a script of keys counts from the first step.
-pub(super) fn first_look(session: &mut Session) {
-    session.apply(Command::SeekClamped(Protocol::SYNTHETIC.context));
 }
 
 /// A session that was opened.

@@ -32,7 +32,8 @@ impl Ellipse {
         }
     }
 
-    /// `count` points of the ellipse of `sigmas` σ around `centre`, in order, and the first once more: a closed line.
+    /// `count` points, at least one, of the ellipse of `sigmas` σ around `centre`, in order, and the first once more: a
+    /// closed line.
     pub fn outline(self, centre: [f32; 2], sigmas: f32, count: usize) -> Vec<[f32; 2]> {
         let (sin, cos) = self.angle.sin_cos();
         (0..=count)

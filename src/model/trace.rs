@@ -67,6 +67,10 @@ impl Rolled {
     /// The covariance after each control, `A P Aᵀ + Q` from a belief's log-variances on, `(Z, Z)` row major (D20).
     pub fn covariances(&self, start_log_var: &[f32]) -> impl Iterator<Item = Vec<f64>> {
         let latent = start_log_var.len();
+        debug_assert_eq!(
+            self.transitions.len(),
+            self.gaussians.len() * latent * latent
+        );
         let mut covariance = diagonal(start_log_var);
         let transitions = self.transitions.chunks_exact((latent * latent).max(1));
         let steps = transitions.zip(0..self.gaussians.len());

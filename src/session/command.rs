@@ -50,6 +50,8 @@ pub enum Command {
     First,
     /// Last step.
     Last,
+    /// The first predicted step: of truth, belief and prediction there is something to see.
+    FirstPredicted,
     /// Go so many episodes on; it stops at the ends.
     Episode(i64),
     /// Go to the episode of this index.

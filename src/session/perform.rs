@@ -30,6 +30,7 @@ impl Session {
             Command::SeekClamped(step) => self.playback.seek(step, steps),
             Command::First => self.playback.seek(0, steps),
             Command::Last => self.playback.seek(steps, steps),
+            Command::FirstPredicted => self.playback.seek(self.rollout().start + 1, steps),
             Command::Episode(by) => self.go_episodes(by),
             Command::SelectEpisode(index) => self.select_episode(index),
             Command::SelectModel(index) => self.select_model(index),

@@ -155,7 +155,7 @@ pub struct EpisodeView {
     pub push_newtons: Vec<[f32; 2]>,
     /// What was odd about the recording, with topic and time.
     pub flags: Vec<String>,
-    /// The step that each of it concerns.
+    /// The step that each of them concerns.
     pub flagged_steps: Vec<usize>,
     /// Roles the model needs and the recording lacks; empty when the model can run.
     pub missing: Vec<String>,

@@ -372,7 +372,7 @@ fn what_was_odd_is_said_and_marked_on_the_timeline() {
         "/wrench at 1.20 s: gap of 0.9 s".to_owned(),
         "/wrench at 2.00 s: other".to_owned(),
     ];
-    episode.flagged_steps = vec![4, 7];
+    episode.flagged_steps = vec![5, 7];
     snapshot.episode = Some(Arc::new(episode));
     snapshot.badge = Badge::Trained;
     snapshot.message = None;

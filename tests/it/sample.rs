@@ -15,6 +15,14 @@ fn printed(keys: &str) -> String {
     answer(&mut command)
 }
 
+#[test]
+fn what_one_sees_first_is_a_prediction_and_keys_count_from_the_first_step() {
+    let mut command = poescope();
+    command.env("NO_COLOR", "1").arg("--print");
+    assert!(answer(&mut command).contains("step  5/16"));
+    assert!(printed("l").contains("step  2/16"));
+}
+
 /// The line that begins with `label`, of a printed frame.
 fn line<'a>(frame: &'a str, label: &str) -> &'a str {
     frame

@@ -45,6 +45,9 @@ pub(super) fn run(args: &ExportArgs, stop: &AtomicBool) -> anyhow::Result<()> {
             bail!("--state: {}", told.text);
         }
     }
+    if args.state.is_none() && args.keys.is_none() {
+        app.session.apply(Command::FirstPredicted);
+    }
     if !args.episode.is_empty() {
         let episodes = super::choose::episodes(&dataset, &app.session, args, None, || Ok(0))?;
         app.session.apply(Command::SelectEpisode(episodes[0]));

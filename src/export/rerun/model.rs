@@ -15,7 +15,7 @@ use crate::session::snapshot::{LatentView, Snapshot};
 pub(super) fn describe(log: &Log<'_>, model: &Shown<'_>) -> RecordingStreamResult<()> {
     let root = &model.name;
     let first = model.first();
-    let latent = first.models.get(first.model).map_or(0, |info| info.latent);
+    let latent = first.shown_model().map_or(0, |info| info.latent);
     let dimensions = |path: &str| log.names(path, (1..=latent).map(|d| format!("z{d}")), None);
     let gaussian = |path: &str| {
         let mut parts = ["mean", "sigma", "log_var"].into_iter();

@@ -126,7 +126,7 @@ impl Inferred {
         precision_shares(&alphas, &log_vars)
     }
 
-    /// The same weighted by what moves the position that a probe's `weights` read; none where they read nothing.
+    /// Each expert's share of the position that a probe's `weights` read, the prior last (D1); none where they read nothing.
     pub fn position_shares(&self, belief: usize, weights: &[f32]) -> Option<Vec<f32>> {
         let log_var = self.posterior(belief).log_var;
         let variance: Vec<f32> = log_var.iter().map(|v| v.exp()).collect();
