@@ -17,8 +17,16 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use anyhow::Context;
+use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::{Cli, Command};
+
+/// A bar of so many, on standard error where that is a terminal.
+fn progress_bar(len: usize, template: &str) -> ProgressBar {
+    let style = ProgressStyle::with_template(template);
+    let bar = ProgressBar::new(len as u64);
+    bar.with_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()))
+}
 
 /// Runs what the command line asks for.
 pub fn dispatch(cli: Cli) -> anyhow::Result<()> {

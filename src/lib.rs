@@ -11,7 +11,8 @@
 //!
 //! # Who may import whom
 //! ```text
-//! episode, modality < measure < model | data | sim < eval | session < train | tui | web | export < cli < command < main
+//! episode, modality, lock < measure < model | data | sim < eval | session < train | tui | web | export
+//!     < cli < command < main
 //! ```
 //! A part imports only what stands to its left; parts joined by `|` do not import each other.
 //! `tests/it/architecture.rs` reads the `use` lines and fails on any other edge.
@@ -26,6 +27,7 @@ pub mod data;
 pub mod episode;
 pub mod eval;
 pub mod export;
+pub mod lock;
 pub mod measure;
 pub mod modality;
 pub mod model;

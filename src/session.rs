@@ -31,7 +31,6 @@ pub mod wants;
 
 mod damaging;
 mod finding;
-mod lock;
 mod perform;
 mod planning;
 mod prompt;
@@ -52,7 +51,6 @@ use std::time::{Duration, Instant};
 use attach::Lines;
 use command::{Command, Scope};
 use known::Known;
-use lock::lock;
 use playback::Playback;
 use predict::Predictor;
 use restore::Restoration;
@@ -68,6 +66,7 @@ use worker::{Answer, Opened, Request, Shared, Target};
 pub use worker::{Found, THREAD};
 
 use crate::episode::EpisodeSource;
+use crate::lock::lock;
 
 /// How soon to look again while something is computed, for a face without a waker.
 const POLL: Duration = Duration::from_millis(8);

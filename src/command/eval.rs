@@ -13,7 +13,6 @@ mod settings;
 use std::sync::atomic::Ordering;
 
 use anyhow::{Context, bail};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use self::entrants::Entrant;
@@ -21,7 +20,7 @@ use self::fit::Fit;
 use self::ground::Ground;
 use self::ledger::{Joined, Ledger, Place};
 use self::scores::Outcome;
-use super::{note, sample, say};
+use super::{note, progress_bar, sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
 use crate::episode::EpisodeSource;
 use crate::eval::protocol::Protocol;
@@ -90,10 +89,10 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         };
         fit.each(&mut contest.candidates, &entrants)?;
     }
-    let bar = ProgressBar::new(own.len() as u64);
-    bar.set_style(ProgressStyle::with_template(
+    let bar = progress_bar(
+        own.len(),
         "scoring {bar:30} {pos}/{len} episodes, {eta} left",
-    )?);
+    );
     bar.inc((own.len() - left.len()) as u64);
     let mut left_out: Vec<String> = Vec::new();
     for chunk in left.chunks(CHUNK) {

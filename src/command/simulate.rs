@@ -4,10 +4,9 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, bail};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
-use super::{say, stop_on_signals};
+use super::{progress_bar, say, stop_on_signals};
 use crate::{
     cli::SimulateArgs,
     data::DatasetWriter,
@@ -48,7 +47,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let sheet = args.sheet.as_deref();
     let sheet = sheet.map(|path| Output::create(path, args.force));
     let sheet = sheet.transpose().context("--sheet")?;
-    let mut writer = DatasetWriter::create(out.partial())?;
+    let mut writer = DatasetWriter::create(out, &args.out)?;
     let mut rows = Vec::new();
     let motions = record_all(args, &stop, &mut |recording| {
         if sheet.is_some() && rows.len() < SHEET_ROWS {
@@ -56,8 +55,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         }
         Ok(writer.write(recording)?)
     })?;
-    writer.finish()?;
-    out.commit()?;
+    writer.finish()?.commit()?;
     if let Some(sheet) = sheet {
         save_sheet(&rows, sheet)?;
     }
@@ -93,7 +91,10 @@ fn record_all(
         .context("starting the worker threads")?;
 
     let mut motions = Motions::default();
-    let progress = progress_bar(args.episodes);
+    let progress = progress_bar(
+        args.episodes,
+        "{bar:40} {pos}/{len} episodes, {per_sec}, {eta} left",
+    );
     let chunk = CHUNK_PER_THREAD * pool.current_num_threads();
     for first in (0..args.episodes).step_by(chunk) {
         let indices = first..args.episodes.min(first + chunk);
@@ -115,14 +116,6 @@ fn record_all(
     }
     progress.finish_and_clear();
     Ok(motions)
-}
-
-fn progress_bar(episodes: usize) -> ProgressBar {
-    let bar = ProgressBar::new(episodes as u64);
-    let template = "{bar:40} {pos}/{len} episodes, {per_sec}, {eta} left";
-    bar.with_style(
-        ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
-    )
 }
 
 #[cfg(test)]

@@ -90,7 +90,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     // A probe belongs to the weights it was fitted on, and those are about to change.
     finish::remove(&args.out)?;
     metrics::forget_after(&args.out, state.update)?;
-    let bar = show::bar();
+    let bar = super::progress_bar(1000, "{bar:20} {msg}");
     let run = Run {
         train: sets.train(),
         val: sets.val(),

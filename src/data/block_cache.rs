@@ -1,7 +1,8 @@
 //! The blocks that were unpacked last: neighbouring episodes often share a chunk.
 
+use crate::lock::lock;
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 /// Unpacked bytes to keep, in all.
 const BYTES_LIMIT: usize = 64 << 20;
@@ -33,13 +34,13 @@ impl BlockCache {
     }
 
     fn take(&self, key: Key) -> Option<Arc<Vec<u8>>> {
-        let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut blocks = lock(&self.blocks);
         let at = blocks.iter().position(|(held, _)| *held == key)?;
         blocks.remove(at).map(|(_, block)| block)
     }
 
     fn put(&self, key: Key, block: Arc<Vec<u8>>) {
-        let mut blocks = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut blocks = lock(&self.blocks);
         blocks.retain(|(held, _)| *held != key);
         blocks.push_back((key, block));
         let mut bytes: usize = blocks.iter().map(|(_, block)| block.len()).sum();

@@ -13,6 +13,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use super::error::DataError;
 use crate::episode::Episode;
+use crate::lock::lock;
 
 /// Episodes by index.
 #[derive(Debug)]
@@ -124,7 +125,7 @@ impl Store {
         };
         let mut bytes = vec![0; length];
         if let Some(file) = &self.file {
-            let mut file = file.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut file = lock(file);
             file.seek(SeekFrom::Start(offset))
                 .and_then(|_| file.read_exact(&mut bytes))
                 .map_err(DataError::io(&self.folder))?;

@@ -3,8 +3,7 @@
 mod check;
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::io::{Seek, Write};
 use std::path::{Path, PathBuf};
 
 use mcap::records::{MessageHeader, Metadata};
@@ -19,14 +18,13 @@ use crate::episode::{EpisodeMeta, Frame, Recording, Split};
 /// Reliable and keeping the last ten, as `ros2 topic` offers by default.
 pub(super) const QOS: &str = "- history: keep_last\n  depth: 10\n  reliability: reliable\n  durability: volatile\n  deadline:\n    sec: 9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  liveliness: automatic\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  avoid_ros_namespace_conventions: false";
 
-/// Writes recordings into one file, which appears when it is finished: until then it has another name.
+/// Writes recordings into one file.
 ///
 /// The same recordings make the same bytes.
-pub struct DatasetWriter {
+pub struct DatasetWriter<W: Write + Seek> {
+    /// For messages to the user.
     path: PathBuf,
-    temporary: PathBuf,
-    /// None once finished.
-    writer: Option<Writer<BufWriter<File>>>,
+    writer: Writer<W>,
     topics: Topics,
     channels: BTreeMap<Role, u16>,
     /// End of the last episode, in nanoseconds.
@@ -34,30 +32,20 @@ pub struct DatasetWriter {
     payload: Vec<u8>,
 }
 
-impl DatasetWriter {
-    /// Begins a dataset that will be `path`. A file of that name is replaced: whoever must not lose one looks first.
+impl<W: Write + Seek> DatasetWriter<W> {
+    /// Begins a dataset that will be `path`, into `into`.
     ///
     /// # Errors
-    /// If no file can be made in its folder.
-    pub fn create(path: &Path) -> Result<Self, DataError> {
-        let name = path
-            .file_name()
-            .unwrap_or(path.as_os_str())
-            .to_string_lossy();
-        let temporary = path.with_file_name(format!(".{name}.{}.partial", std::process::id()));
-        let file = File::create(&temporary).map_err(DataError::io(path))?;
-        let writer = options().create(BufWriter::new(file));
-        let mut created = Self {
+    /// If it cannot be written to.
+    pub fn create(into: W, path: &Path) -> Result<Self, DataError> {
+        Ok(Self {
+            writer: options().create(into).map_err(write_error(path))?,
             path: path.to_owned(),
-            temporary,
-            writer: None,
             topics: Topics::default(),
             channels: BTreeMap::new(),
             end_nanos: None,
             payload: Vec::new(),
-        };
-        created.writer = Some(writer.map_err(created.failed())?);
-        Ok(created)
+        })
     }
 
     /// Appends one episode: its messages in log-time order (log time, publish time and header stamp are all the
@@ -87,42 +75,28 @@ impl DatasetWriter {
                 log_time: nanos,
                 publish_time: nanos,
             };
-            if let Some(writer) = &mut self.writer {
-                writer
-                    .write_to_known_channel(&header, &self.payload)
-                    .map_err(write_error(&self.path))?;
-            }
+            self.writer
+                .write_to_known_channel(&header, &self.payload)
+                .map_err(write_error(&self.path))?;
         }
         let record = Metadata {
             name: "episode".to_owned(),
             metadata: entries(&recording.meta, start_nanos, end_nanos),
         };
-        if let Some(writer) = &mut self.writer {
-            writer
-                .write_metadata(&record)
-                .map_err(write_error(&self.path))?;
-        }
+        self.writer
+            .write_metadata(&record)
+            .map_err(write_error(&self.path))?;
         self.end_nanos = Some(end_nanos);
         Ok(())
     }
 
-    /// Completes the file and gives it its name.
+    /// Completes the file and gives back what it was written into.
     ///
     /// # Errors
-    /// If the disk refuses; nothing is left behind then.
-    pub fn finish(mut self) -> Result<(), DataError> {
-        let Some(mut writer) = self.writer.take() else {
-            return Ok(());
-        };
-        writer.finish().map_err(self.failed())?;
-        let mut buffered = writer.into_inner();
-        buffered.flush().map_err(DataError::io(&self.temporary))?;
-        buffered
-            .get_ref()
-            .sync_all()
-            .map_err(DataError::io(&self.temporary))?;
-        drop(buffered);
-        fs::rename(&self.temporary, &self.path).map_err(DataError::io(&self.path))
+    /// If that cannot be written to.
+    pub fn finish(mut self) -> Result<W, DataError> {
+        self.writer.finish().map_err(write_error(&self.path))?;
+        Ok(self.writer.into_inner())
     }
 
     /// The channel of `role`, made when it is first needed.
@@ -130,9 +104,10 @@ impl DatasetWriter {
         if let Some(&channel) = self.channels.get(&role) {
             return Ok(channel);
         }
-        let (Some(writer), [ty, ..]) = (&mut self.writer, role.types()) else {
+        let [ty, ..] = role.types() else {
             return Ok(0);
         };
+        let writer = &mut self.writer;
         let qos = BTreeMap::from([("offered_qos_profiles".to_owned(), QOS.to_owned())]);
         let topic = self.topics.topic(role);
         let channel = writer
@@ -143,25 +118,12 @@ impl DatasetWriter {
         Ok(channel)
     }
 
-    fn failed(&self) -> impl Fn(McapError) -> DataError + use<> {
-        write_error(&self.path)
-    }
-
     fn unwritable(&self, recording: &Recording, what: String) -> DataError {
         DataError::Unwritable {
             path: self.path.clone(),
             episode: recording.meta.id.clone(),
             what,
         }
-    }
-}
-
-impl Drop for DatasetWriter {
-    /// Removes what was not finished.
-    fn drop(&mut self) {
-        drop(self.writer.take());
-        // Gone already if it was finished; else there is nobody to tell.
-        let _ = fs::remove_file(&self.temporary);
     }
 }
 

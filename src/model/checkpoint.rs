@@ -44,6 +44,26 @@ pub enum CheckpointError {
     },
 }
 
+impl CheckpointError {
+    /// For `map_err`: the file at `path` could not be read or written.
+    pub fn io(path: &Path) -> impl Fn(std::io::Error) -> Self + use<> {
+        let path = path.to_owned();
+        move |cause| Self::File {
+            path: path.clone(),
+            cause,
+        }
+    }
+
+    /// What is wrong with the weights, or other tensors, at `path`.
+    pub fn weights(path: &Path) -> impl Fn(String) -> Self + use<> {
+        let path = path.to_owned();
+        move |what| Self::Weights {
+            path: path.clone(),
+            what,
+        }
+    }
+}
+
 /// What to do about an error of the operating system, where that can be known.
 fn advice(cause: &std::io::Error) -> &'static str {
     match cause.kind() {
@@ -79,28 +99,22 @@ pub const REPORT: &str = "report.json";
 
 /// Writes `bytes` to `path` by way of a temporary file beside it, so that a half-written one is never seen.
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
-    let file_error = |cause| CheckpointError::File {
-        path: path.to_owned(),
-        cause,
-    };
+    let failed = CheckpointError::io(path);
     let temporary = path.with_extension("part");
-    let mut file = std::fs::File::create(&temporary).map_err(file_error)?;
+    let mut file = std::fs::File::create(&temporary).map_err(&failed)?;
     // On disk before it has its name: a power cut must not leave an empty file under it.
     let written = file.write_all(bytes).and_then(|()| file.sync_all());
     let renamed = written.and_then(|()| std::fs::rename(&temporary, path));
     renamed.map_err(|cause| {
         // On a full disk it would be in the way of everything else.
         let _ = std::fs::remove_file(&temporary);
-        file_error(cause)
+        failed(cause)
     })
 }
 
 /// Everything in a file.
-fn read_bytes(path: &Path) -> Result<Vec<u8>, CheckpointError> {
-    std::fs::read(path).map_err(|cause| CheckpointError::File {
-        path: path.to_owned(),
-        cause,
-    })
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, CheckpointError> {
+    std::fs::read(path).map_err(CheckpointError::io(path))
 }
 
 /// Reads a config, and says which key is wrong.
@@ -143,10 +157,7 @@ pub fn save(
     dtype: DType,
     update: Option<u64>,
 ) -> Result<(), CheckpointError> {
-    std::fs::create_dir_all(folder).map_err(|cause| CheckpointError::File {
-        path: folder.to_owned(),
-        cause,
-    })?;
+    std::fs::create_dir_all(folder).map_err(CheckpointError::io(folder))?;
     let path = folder.join(CONFIG);
     let text = toml::to_string(&model.config).map_err(|error| CheckpointError::Config {
         path: path.clone(),
@@ -163,31 +174,22 @@ pub fn save(
         }
         Ok(all)
     };
-    let refuse = |what: String| CheckpointError::Weights {
-        path: path.clone(),
-        what,
-    };
+    let refuse = CheckpointError::weights(&path);
     let tensors = tensors().map_err(|error| refuse(first_line(&error)))?;
-    let about = update.map(|update| HashMap::from([(UPDATE.to_owned(), update.to_string())]));
-    write_with(&path, tensors, about)
+    let about = update.map(|update| (UPDATE, update.to_string()));
+    write_tensors(&path, tensors, about)
 }
 
-/// Writes named tensors as safetensors, atomically.
-pub fn write_tensors(path: &Path, tensors: Vec<(String, Tensor)>) -> Result<(), CheckpointError> {
-    write_with(path, tensors, None)
-}
-
-/// The same, with what is said of them in the header: one key at most, for their order there is random.
-fn write_with(
+/// Writes named tensors as safetensors, atomically, with what is said of them in the header: one key at most, for the
+/// order of several there is random.
+pub fn write_tensors(
     path: &Path,
     tensors: Vec<(String, Tensor)>,
-    about: Option<HashMap<String, String>>,
+    about: Option<(&str, String)>,
 ) -> Result<(), CheckpointError> {
-    let bytes =
-        safetensors::serialize(tensors, about).map_err(|error| CheckpointError::Weights {
-            path: path.to_owned(),
-            what: error.to_string(),
-        })?;
+    let about = about.map(|(key, text)| HashMap::from([(key.to_owned(), text)]));
+    let bytes = safetensors::serialize(tensors, about)
+        .map_err(|error| CheckpointError::weights(path)(error.to_string()))?;
     write_atomic(path, &bytes)
 }
 
@@ -211,19 +213,14 @@ pub fn read_tensors(path: &Path) -> Result<HashMap<String, Tensor>, CheckpointEr
 
 fn parse_tensors(path: &Path, bytes: &[u8]) -> Result<HashMap<String, Tensor>, CheckpointError> {
     candle_core::safetensors::load_buffer(bytes, &Device::Cpu).map_err(|error| {
-        CheckpointError::Weights {
-            path: path.to_owned(),
-            what: format!("not safetensors ({})", first_line(&error)),
-        }
+        let what = format!("not safetensors ({})", first_line(&error));
+        CheckpointError::weights(path)(what)
     })
 }
 
 /// Fills the model's networks from what `path` holds.
 fn fill(model: &Model, path: &Path, bytes: &[u8]) -> Result<(), CheckpointError> {
-    let refuse = |what: String| CheckpointError::Weights {
-        path: path.to_owned(),
-        what,
-    };
+    let refuse = CheckpointError::weights(path);
     let tensors = parse_tensors(path, bytes)?;
     for network in model.networks() {
         network
@@ -265,10 +262,7 @@ pub fn load_with_hash(folder: &Path) -> Result<(Model, Option<Probe>, String), C
     let about = read_bytes(&path)?;
     let config = parse_config(&path, &about)?;
     let path = folder.join(WEIGHTS);
-    let refuse = |what: String| CheckpointError::Weights {
-        path: path.clone(),
-        what,
-    };
+    let refuse = CheckpointError::weights(&path);
     let model = Model::blank(config, &Device::Cpu).map_err(|error| refuse(first_line(&error)))?;
     let weights = read_bytes(&path)?;
     fill(&model, &path, &weights)?;

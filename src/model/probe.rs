@@ -147,10 +147,7 @@ impl Probe {
         path: &Path,
         regressors: Option<&Regressors>,
     ) -> Result<(), CheckpointError> {
-        let refuse = |error: candle_core::Error| CheckpointError::Weights {
-            path: path.to_owned(),
-            what: error.to_string(),
-        };
+        let refuse = |error: candle_core::Error| CheckpointError::weights(path)(error.to_string());
         let tensor = |numbers: &[f32], shape: &[usize]| {
             Tensor::from_slice(numbers, shape, &Device::Cpu).map_err(refuse)
         };
@@ -169,7 +166,7 @@ impl Probe {
         if let Some(regressors) = regressors {
             tensors.extend(regressors.tensors().map_err(refuse)?);
         }
-        write_tensors(path, tensors)
+        write_tensors(path, tensors, None)
     }
 
     /// Reads what [`Self::write`] wrote, for a model of `latent` dimensions.
@@ -194,10 +191,7 @@ fn numbers(
     name: &str,
     len: usize,
 ) -> Result<Vec<f32>, CheckpointError> {
-    let refuse = |what: String| CheckpointError::Weights {
-        path: path.to_owned(),
-        what,
-    };
+    let refuse = CheckpointError::weights(path);
     let tensor = tensors
         .get(name)
         .ok_or_else(|| refuse(format!("tensor `{name}` is missing")))?;

@@ -9,11 +9,11 @@ use std::sync::{Arc, Mutex, Weak};
 
 use super::Session;
 use super::command::Command;
-use super::lock::lock;
 use super::predict::Predictor;
 use super::snapshot::{Message, Snapshot};
 use super::wants::Wants;
 use super::worker::Shared;
+use crate::lock::lock;
 
 /// Commands of one face that may wait; more than anyone asks for between two looks.
 const QUEUE: usize = 256;

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::Session;
-use super::lock::lock;
 use super::predict::Predictor;
 use super::worker::{Found, Shared};
+use crate::lock::lock;
 
 /// Hands newer models to a session, from another thread.
 #[derive(Clone)]

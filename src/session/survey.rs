@@ -18,13 +18,13 @@ pub use cache::Cache;
 use score::Sheet;
 
 use super::known::Known;
-use super::lock::lock;
 use super::predict::Predictor;
 use super::settings::Settings;
 use super::snapshot::board::BoardView;
 use super::snapshot::table::EpisodeScore;
 use super::worker::{Mailbox, Shared};
 use crate::episode::{EpisodeSource, Split};
+use crate::lock::lock;
 
 /// Name of the thread.
 pub const THREAD: &str = "poescope-survey";

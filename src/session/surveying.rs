@@ -4,10 +4,10 @@ use std::sync::Arc;
 use std::thread::JoinHandle;
 
 use super::Session;
-use super::lock::lock;
 use super::predict::Predictor;
 use super::snapshot::board::BoardView;
 use super::survey::{self, BoardRequest, Cache, SurveyAnswer, SurveyRequest, SurveyShared};
+use crate::lock::lock;
 
 /// A survey that has been started.
 pub(super) struct Survey {

@@ -33,9 +33,9 @@ use memo::Memo;
 pub use memo::Target;
 pub use opened::Opened;
 
-use super::lock::lock;
 use super::predict::{PredictError, Predictor};
 use crate::episode::{EpisodeSource, SourceError};
+use crate::lock::lock;
 
 /// Name of the thread, for those who look at threads; a panic on it is caught and told as a message.
 pub const THREAD: &str = "poescope-session";

@@ -156,12 +156,12 @@ pub fn log(folder: &Path, events: &mut EventWriter, line: &Line) -> Result<(), T
     events.scalars(line.update, wall_secs, scalars)?;
     let path = folder.join(METRICS);
     let line = serde_json::json!(line);
-    std::fs::OpenOptions::new()
+    let written = std::fs::OpenOptions::new()
         .create(true)
         .append(true)
         .open(&path)
-        .and_then(|mut file| writeln!(file, "{line}"))
-        .map_err(|cause| CheckpointError::File { path, cause }.into())
+        .and_then(|mut file| writeln!(file, "{line}"));
+    Ok(written.map_err(CheckpointError::io(&path))?)
 }
 
 /// Drops the lines past `update`: a run that was killed had gone further than its last checkpoint.
@@ -173,10 +173,7 @@ pub fn forget_after(folder: &Path, update: u64) -> Result<(), TrainError> {
     let path = folder.join(METRICS);
     let bytes = match std::fs::read(&path) {
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
-        read => read.map_err(|cause| CheckpointError::File {
-            path: path.clone(),
-            cause,
-        })?,
+        read => read.map_err(CheckpointError::io(&path))?,
     };
     // A torn line is no line, whatever its bytes are.
     let text = String::from_utf8_lossy(&bytes);

@@ -1,6 +1,6 @@
 //! A run that can be put down and taken up again: weights, moments and counters in one file, written atomically.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Duration;
 
@@ -72,14 +72,8 @@ impl Origin {
 
 impl Counters {
     fn read(path: &Path) -> Result<Self, CheckpointError> {
-        let bytes = std::fs::read(path).map_err(|cause| CheckpointError::File {
-            path: path.to_owned(),
-            cause,
-        })?;
-        let refuse = |what: String| CheckpointError::Weights {
-            path: path.to_owned(),
-            what,
-        };
+        let bytes = checkpoint::read_bytes(path)?;
+        let refuse = CheckpointError::weights(path);
         let (_, header) = safetensors::SafeTensors::read_metadata(&bytes)
             .map_err(|error| refuse(error.to_string()))?;
         let text = header
@@ -178,27 +172,18 @@ impl State {
                 .collect(),
         };
         let path = folder.join(STATE);
-        let refuse = |what: String| CheckpointError::Weights {
-            path: path.clone(),
-            what,
-        };
+        let refuse = CheckpointError::weights(&path);
         let counters =
             serde_json::to_string(&counters).map_err(|error| refuse(error.to_string()))?;
-        let metadata = HashMap::from([("counters".to_owned(), counters)]);
-        let bytes = safetensors::serialize(tensors, Some(metadata))
-            .map_err(|error| refuse(error.to_string()))?;
-        checkpoint::write_atomic(&path, &bytes)?;
-        Ok(())
+        let about = Some(("counters", counters));
+        Ok(checkpoint::write_tensors(&path, tensors, about)?)
     }
 
     /// Reads what [`Self::save`] wrote, and fills the model's parameters.
     pub fn load(model: &Model, folder: &Path) -> Result<Self, TrainError> {
         let path = folder.join(STATE);
         let counters = Counters::read(&path)?;
-        let refuse = |what: String| CheckpointError::Weights {
-            path: path.clone(),
-            what,
-        };
+        let refuse = CheckpointError::weights(&path);
         let tensors = checkpoint::read_tensors(&path)?;
         let numbers = |name: &str| -> Result<Tensor, CheckpointError> {
             tensors

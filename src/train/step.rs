@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::TrainError;
 use super::batch::Batch;
 use super::schedule::{Phase, Stage};
+use crate::lock::lock;
 use crate::model::config::Clipped;
 use crate::model::encoder::Encoder;
 use crate::model::filter::{self, Inputs};
@@ -183,9 +184,7 @@ pub fn loss(model: &Model, batch: &Batch, phase: &Phase, train: bool) -> Result<
         let (error, per_belief) =
             decoder.squared_error(&latents, &weights.decoders[i], &seen, each, train)?;
         total = (total + error)?;
-        let per_belief = per_belief
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let per_belief = lock(&per_belief);
         let mean = per_belief.iter().sum::<f32>() / count as f32;
         *(if i == 0 {
             &mut losses.vision

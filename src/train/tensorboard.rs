@@ -32,19 +32,15 @@ impl EventWriter {
     pub fn append(folder: &Path, next_update: u64) -> Result<Self, TrainError> {
         let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH);
         let wall_secs = now.map_or(0.0, |now| now.as_secs_f64());
-        let refuse = |path: &Path, cause| CheckpointError::File {
-            path: path.to_owned(),
-            cause,
-        };
         let older = std::fs::read_dir(folder)
-            .map_err(|cause| refuse(folder, cause))?
+            .map_err(CheckpointError::io(folder))?
             .flatten()
             .filter(|entry| entry.file_name().to_string_lossy().starts_with(PREFIX))
             .count();
         // Files are read in the order of their names; the running number orders those of one second.
         let path = folder.join(format!("{PREFIX}{wall_secs:010.0}.poescope.{older:04}"));
         let file = OpenOptions::new().append(true).create_new(true).open(&path);
-        let file = file.map_err(|cause| refuse(&path, cause))?;
+        let file = file.map_err(CheckpointError::io(&path))?;
         let mut writer = Self { path, file };
         let event = || Message::default().double(event::WALL_TIME, wall_secs);
         writer.write(&event().bytes(event::FILE_VERSION, b"brain.Event:2"))?;
@@ -83,10 +79,7 @@ impl EventWriter {
 
     fn write(&mut self, event: &Message) -> Result<(), TrainError> {
         let written = self.file.write_all(&record(&event.0));
-        written.map_err(|cause| {
-            let path = self.path.clone();
-            CheckpointError::File { path, cause }.into()
-        })
+        Ok(written.map_err(CheckpointError::io(&self.path))?)
     }
 }
 

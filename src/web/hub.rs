@@ -1,7 +1,7 @@
 //! Between the session and the viewers: takes snapshots in, tells everybody what changed, hears what they ask for.
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::time::{Duration, Instant};
 
 use tokio::sync::Notify;
@@ -16,6 +16,7 @@ use super::scene::{Composer, Shown};
 use super::stage::Stage;
 use super::talk::Talk;
 use super::viewer::{HOLD, Viewer};
+use crate::lock::lock;
 use crate::session::attach::Attached;
 use crate::session::command::Command;
 use crate::session::snapshot::{Message, Snapshot};
@@ -255,7 +256,7 @@ impl Hub {
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }
 

@@ -6,7 +6,6 @@ use std::ops::Range;
 
 use super::protocol::array::Written;
 use super::protocol::node::{NodeUpdate, RemoveNode};
-use super::protocol::notification::RemoveNotification;
 use super::protocol::pack::entries;
 use super::protocol::update::{Remove, Update};
 use super::protocol::{Key, Kind, Message, write};
@@ -82,10 +81,7 @@ impl Piece {
                 name: id,
                 owner: "",
             }),
-            Kind::Note => write(&RemoveNotification {
-                uuid: id.to_owned(),
-            }),
-            Kind::Client => return None,
+            Kind::Note | Kind::Client => return None,
         };
         Some(Change {
             key: self.key.clone(),
@@ -194,20 +190,17 @@ mod tests {
 
     use serde_json::{Value, json};
 
-    use super::super::protocol::checkbox::{Checkbox, CheckboxProps};
+    use super::super::protocol::checkbox::CheckboxProps;
+    use super::super::protocol::envelope::Control;
     use super::super::protocol::props::Base;
     use super::super::protocol::{batch, frame};
     use super::*;
 
     fn switch(value: bool, label: &str, container: &str) -> Piece {
-        Piece::of(&Checkbox {
-            uuid: "s".to_owned(),
-            container_uuid: container.to_owned(),
-            value,
-            props: CheckboxProps {
-                base: Base::new(1.0, label),
-            },
-        })
+        let props = CheckboxProps {
+            base: Base::new(1.0, label),
+        };
+        Piece::of(&Control::new("s", container, Some(value), props))
     }
 
     fn told(changes: &[Change]) -> Vec<Value> {

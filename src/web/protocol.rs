@@ -11,6 +11,7 @@ pub mod button;
 pub mod camera;
 pub mod checkbox;
 pub mod dropdown;
+pub mod envelope;
 pub mod folder;
 pub mod frame;
 pub mod grid;
@@ -125,27 +126,6 @@ pub fn write(message: &impl Serialize) -> Vec<u8> {
 
 /// Says what a message is about.
 macro_rules! about {
-    ($message:ty, gui $field:ident) => {
-        impl $crate::web::protocol::Message for $message {
-            fn key(&self) -> $crate::web::protocol::Key {
-                $crate::web::protocol::Key::gui(&self.$field)
-            }
-        }
-    };
-    ($message:ty, node $field:ident) => {
-        impl $crate::web::protocol::Message for $message {
-            fn key(&self) -> $crate::web::protocol::Key {
-                $crate::web::protocol::Key::node(&self.$field)
-            }
-        }
-    };
-    ($message:ty, note $field:ident) => {
-        impl $crate::web::protocol::Message for $message {
-            fn key(&self) -> $crate::web::protocol::Key {
-                $crate::web::protocol::Key::note(&self.$field)
-            }
-        }
-    };
     ($message:ty, $part:literal of node $field:ident) => {
         impl $crate::web::protocol::Message for $message {
             fn key(&self) -> $crate::web::protocol::Key {

@@ -51,21 +51,18 @@ impl Stage {
 
 #[cfg(test)]
 mod tests {
-    use super::super::protocol::progress::{ProgressBar, ProgressBarProps};
+    use super::super::protocol::envelope::Control;
+    use super::super::protocol::progress::ProgressBarProps;
     use super::*;
 
     fn bar(uuid: &str, value: f64) -> Piece {
-        Piece::of(&ProgressBar {
-            uuid: uuid.to_owned(),
-            container_uuid: "root".to_owned(),
-            value,
-            props: ProgressBarProps {
-                order: 1.0,
-                animated: false,
-                color: None,
-                visible: true,
-            },
-        })
+        let props = ProgressBarProps {
+            order: 1.0,
+            animated: false,
+            color: None,
+            visible: true,
+        };
+        Piece::of(&Control::new(uuid, "root", Some(value), props))
     }
 
     fn keys(moment: &Moment) -> Vec<(String, String)> {

@@ -1,7 +1,7 @@
 //! One connected viewer: what waits for it, what it set last, its keys.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
 use hyper::body::Bytes;
@@ -15,6 +15,7 @@ use super::protocol::replay::ReplayDone;
 use super::protocol::{Key, write};
 use super::stage::Stage;
 use super::talk::Talk;
+use crate::lock::lock;
 use crate::session::command::Command;
 use crate::session::snapshot::Snapshot;
 
@@ -171,11 +172,7 @@ impl Viewer {
 
     /// Ends its connection, and forgets what it asks for; the first reason counts.
     pub fn close(&self, code: u16, reason: &str) {
-        let mut end = reason.len().min(120);
-        while !reason.is_char_boundary(end) {
-            end -= 1;
-        }
-        let reason = reason[..end].to_owned();
+        let reason = reason[..reason.floor_char_boundary(120)].to_owned();
         let mut state = self.lock();
         state.close.get_or_insert(Farewell { code, reason });
         state.asked.clear();
@@ -195,7 +192,7 @@ impl Viewer {
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.state)
     }
 }
 
@@ -231,7 +228,8 @@ mod tests {
     use serde_json::{Value as Json, json};
 
     use super::super::piece::Piece;
-    use super::super::protocol::checkbox::{Checkbox, CheckboxProps};
+    use super::super::protocol::checkbox::CheckboxProps;
+    use super::super::protocol::envelope::Control;
     use super::super::protocol::frame;
     use super::super::protocol::props::Base;
     use super::*;
@@ -239,14 +237,10 @@ mod tests {
     use crate::session::fake::{FakePredictor, FakeSource};
 
     fn piece(value: bool) -> Piece {
-        Piece::of(&Checkbox {
-            uuid: "s".to_owned(),
-            container_uuid: "root".to_owned(),
-            value,
-            props: CheckboxProps {
-                base: Base::new(1.0, "s"),
-            },
-        })
+        let props = CheckboxProps {
+            base: Base::new(1.0, "s"),
+        };
+        Piece::of(&Control::new("s", "root", Some(value), props))
     }
 
     fn told(viewer: &Viewer) -> Vec<Json> {

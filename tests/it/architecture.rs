@@ -4,7 +4,7 @@ use std::path::Path;
 
 /// Parts from left to right; those of one row do not import each other.
 const ORDER: [&[&str]; 8] = [
-    &["episode", "modality"],
+    &["episode", "modality", "lock"],
     &["measure"],
     &["model", "data", "sim"],
     &["eval", "session"],

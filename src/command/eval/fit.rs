@@ -6,12 +6,11 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::{Context, bail};
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
 use super::entrants::Entrant;
 use super::ground::{odd, unsuited};
-use crate::command::note;
+use crate::command::{note, progress_bar};
 use crate::data::{Dataset, Role};
 use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
@@ -72,8 +71,8 @@ impl Fit<'_> {
                 "--fit {data}: episode `{id}` of its split `train` is one that is scored; score another --split"
             );
         }
-        let style = ProgressStyle::with_template("fitting {bar:30} {pos}/{len} episodes, {msg}")?;
-        let bar = ProgressBar::new(train.len() as u64).with_style(style);
+        let template = "fitting {bar:30} {pos}/{len} episodes, {msg}";
+        let bar = progress_bar(train.len(), template);
         bar.set_message(label);
         let model = scorer.inspector.model();
         let layout = model.config.layout();

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
-use crate::command::note;
+use crate::command::{note, progress_bar};
 use crate::export::drive::Onlooker;
 
 /// Names come from recordings, and a terminal would obey what is not to be read in them.
@@ -22,10 +22,7 @@ pub(super) struct Progress {
 impl Progress {
     /// Of so many episodes; `stop` is set by a signal.
     pub(super) fn new(episodes: usize, stop: Arc<AtomicBool>) -> Self {
-        let template = "{bar:30} {pos}/{len} episodes, {eta} left: {msg}";
-        let style = ProgressStyle::with_template(template);
-        let bar = ProgressBar::new(episodes as u64);
-        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        let bar = progress_bar(episodes, "{bar:30} {pos}/{len} episodes, {eta} left: {msg}");
         Self { bar, stop }
     }
 

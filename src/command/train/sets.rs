@@ -6,9 +6,8 @@ use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anyhow::bail;
-use indicatif::ProgressStyle;
 
-use super::show;
+use crate::command::progress_bar;
 use crate::data::{Dataset, Episodes, Store};
 use crate::episode::{EpisodeSource, Split};
 use crate::model::config::Config;
@@ -41,11 +40,8 @@ impl Sets {
             val: Vec::new(),
             left_out: Vec::new(),
         };
-        let bar = show::bar();
-        bar.set_length(dataset.metas().len() as u64);
-        if let Ok(style) = ProgressStyle::with_template("reading {bar:30} {pos}/{len} episodes") {
-            bar.set_style(style);
-        }
+        let template = "reading {bar:30} {pos}/{len} episodes";
+        let bar = progress_bar(dataset.metas().len(), template);
         let mut lengths = BTreeMap::new();
         for (index, split) in dataset.splits(seed).into_iter().enumerate() {
             if stop.load(Ordering::Relaxed) {

@@ -1,22 +1,12 @@
 //! Progress of a run on standard error: a bar in a terminal, a line an epoch elsewhere.
 
 use std::fmt::Write as _;
-use std::io::IsTerminal;
 
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 
 use crate::command::note;
 use crate::train::Progress;
 use crate::train::step::Losses;
-
-/// A bar, hidden where standard error is no terminal.
-pub fn bar() -> ProgressBar {
-    if std::io::stderr().is_terminal() {
-        ProgressBar::new(1000)
-    } else {
-        ProgressBar::hidden()
-    }
-}
 
 /// Moves the bar; prints a line where an epoch ended.
 pub fn progress(bar: &ProgressBar, progress: &Progress) {
@@ -32,9 +22,6 @@ pub fn progress(bar: &ProgressBar, progress: &Progress) {
         losses.windows,
         losses.kl,
     );
-    if let Ok(style) = ProgressStyle::with_template("{bar:20} {msg}") {
-        bar.set_style(style);
-    }
     bar.set_position((progress.fraction * 1000.0) as u64);
     bar.set_message(line.clone());
     if progress.epoch_ended {

@@ -12,6 +12,7 @@ use ::rerun::sink::{LogSink, SinkFlushError};
 
 use crate::export::ExportError;
 use crate::export::output::Output;
+use crate::lock::lock;
 
 /// Cloned for each stream.
 #[derive(Clone)]
@@ -70,7 +71,7 @@ impl Writer {
     }
 
     fn lock(&self) -> MutexGuard<'_, File> {
-        self.file.lock().unwrap_or_else(PoisonError::into_inner)
+        lock(&self.file)
     }
 }
 

@@ -6,6 +6,7 @@ use rayon::prelude::*;
 use super::chain::cpu;
 use super::pointwise::sum_of_squares;
 use super::{values, vectorised};
+use crate::lock::lock;
 
 /// First and second moments of one flat parameter tensor, and how often it was updated.
 #[derive(Clone, Debug, Default)]
@@ -88,10 +89,7 @@ impl InplaceOp2 for Pass {
         else {
             bail!("adam wants contiguous f32 parameters");
         };
-        let mut moments = self
-            .moments
-            .lock()
-            .unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut moments = lock(&self.moments);
         let Moments { first, second, .. } = &mut *moments;
         let chunk = 1 << 16;
         theta[start..end]

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::chain::{Chain, cpu, part_size};
 use super::values;
+use crate::lock::lock;
 
 /// `(samples, inputs)` and `(parameters)` to `(samples, outputs)`.
 pub struct Apply {
@@ -66,7 +67,7 @@ impl CustomOp2 for Apply {
             );
         }
         if self.train {
-            *self.kept.lock().unwrap_or_else(PoisonError::into_inner) = activations;
+            *lock(&self.kept) = activations;
         } else {
             self.chain.give(activations);
         }
@@ -83,7 +84,7 @@ impl CustomOp2 for Apply {
         _y: &Tensor,
         dy: &Tensor,
     ) -> Result<(Option<Tensor>, Option<Tensor>)> {
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut kept = lock(&self.kept);
         if kept.is_empty() {
             bail!("a chain that was not run for training has no gradient");
         }

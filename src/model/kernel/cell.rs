@@ -7,7 +7,7 @@ pub(super) mod backward;
 pub(super) mod forward;
 pub(super) mod mixed;
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use candle_core::{CpuStorage, CustomOp3, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
@@ -17,6 +17,7 @@ use self::forward::Tape;
 use super::chain::{cpu, part_size};
 use super::rows::transposed;
 use super::values;
+use crate::lock::lock;
 
 /// Fewer rows than this are not worth a second thread.
 const ROWS_APART: usize = 64;
@@ -196,7 +197,7 @@ impl CustomOp3 for Cell {
             .zip(out.par_chunks_mut(rows * self.sizes.outputs()))
             .map(|((h, x), out)| self.forward(h, x, &w, out))
             .collect();
-        *self.tapes.lock().unwrap_or_else(PoisonError::into_inner) = tapes;
+        *lock(&self.tapes) = tapes;
         Ok((
             CpuStorage::F32(out),
             Shape::from((batch, self.sizes.outputs())),
@@ -218,7 +219,7 @@ impl CustomOp3 for Cell {
         let (h_values, x_values, out_values, dout_values) =
             (h_values?, x_values?, out_values?, dout_values?);
         let sizes = self.sizes;
-        let mut tapes = self.tapes.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut tapes = lock(&self.tapes);
         let w_parts = sizes.weights(w_values?);
         let transposes = Transposes::of(sizes, &w_parts);
         let (mut dh, mut dx) = (vec![0.0; h_values.len()], vec![0.0; x_values.len()]);

@@ -8,7 +8,7 @@ mod backward;
 mod fused;
 
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use candle_core::{Layout, Result, bail};
 use rayon::prelude::*;
@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use super::layer::{Kind, Layer};
 use super::pointwise::Activation;
 use super::values;
+use crate::lock::lock;
 
 /// Samples of a group; 4 to 8 fill the second-level cache with the largest layers.
 const GROUP: usize = 4;
@@ -138,14 +139,14 @@ impl Chain {
 
     /// A buffer of `len` numbers with arbitrary contents, reused between calls: fresh pages cost more than the sums.
     pub(super) fn take(&self, len: usize) -> Vec<f32> {
-        let mut pool = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut pool = lock(&self.buffers);
         let at = pool.iter().position(|buffer| buffer.len() == len);
         at.map_or_else(|| vec![0.0; len], |at| pool.swap_remove(at))
     }
 
     /// Gives a buffer back; the oldest goes where there are too many.
     pub(super) fn give(&self, buffer: Vec<f32>) {
-        let mut pool = self.buffers.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut pool = lock(&self.buffers);
         if pool.len() >= POOL {
             pool.remove(0);
         }

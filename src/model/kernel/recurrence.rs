@@ -9,7 +9,7 @@ mod backward;
 mod forward;
 
 use std::ops::Range;
-use std::sync::{Mutex, PoisonError};
+use std::sync::Mutex;
 
 use candle_core::{CpuStorage, CustomOp2, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
@@ -19,6 +19,7 @@ use super::cell::backward::{Transposes, weights};
 use super::cell::{Sizes, mixed};
 use super::chain::{cpu, part_size};
 use super::values;
+use crate::lock::lock;
 
 /// Fewer sequences than this are not worth a second thread.
 const SEQUENCES_APART: usize = 8;
@@ -241,7 +242,7 @@ impl CustomOp2 for Recurrence {
         let w = values(w, w_layout)?;
         inputs.check(self.sizes, w)?;
         let (out, runs) = run_parts(self.sizes, w, &inputs, true);
-        *self.kept.0.lock().unwrap_or_else(PoisonError::into_inner) = runs;
+        *lock(&self.kept.0) = runs;
         let shape = Shape::from((batch, steps, Row::of(self.sizes).width()));
         Ok((CpuStorage::F32(out), shape))
     }
@@ -263,7 +264,7 @@ impl CustomOp2 for Recurrence {
         let (out_values, dout_values, w_parts) =
             (out_values?, dout_values?, sizes.weights(w_values?));
         let across = Transposes::of(sizes, &w_parts);
-        let mut runs = self.kept.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut runs = lock(&self.kept.0);
         let each = apart(inputs.sequences());
         let width = inputs.sequences().div_ceil(each.len().max(1)) * steps * Row::of(sizes).width();
         let back: Vec<_> = each

@@ -4,13 +4,14 @@
 //! known up to a factor when it is computed; the backward pass only scales it.
 
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 
 use candle_core::{CpuStorage, CustomOp3, Layout, Result, Shape, Tensor, bail};
 use rayon::prelude::*;
 
 use super::chain::{Chain, part_size};
 use super::{values, vectorised};
+use crate::lock::lock;
 
 /// Squared error of each sample, once the operation has run.
 pub type PerSample = Arc<Mutex<Vec<f32>>>;
@@ -141,15 +142,9 @@ impl CustomOp3 for SquaredError {
             .zip(&self.weights)
             .map(|(&e, &w)| f64::from(e) * f64::from(w))
             .sum::<f64>();
-        *self
-            .per_sample
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner) = errors;
+        *lock(&self.per_sample) = errors;
         if self.train {
-            *self
-                .gradients
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner) = Some((dz, self.chain.sum_parts(dws)));
+            *lock(&self.gradients) = Some((dz, self.chain.sum_parts(dws)));
         }
         Ok((CpuStorage::F32(vec![total as f32]), Shape::from(())))
     }
@@ -162,11 +157,7 @@ impl CustomOp3 for SquaredError {
         _res: &Tensor,
         upstream: &Tensor,
     ) -> Result<(Option<Tensor>, Option<Tensor>, Option<Tensor>)> {
-        let gradients = self
-            .gradients
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .take();
+        let gradients = lock(&self.gradients).take();
         let Some((dz, dw)) = gradients else {
             bail!("a squared error that was not run for training has no gradient");
         };

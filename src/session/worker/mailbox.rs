@@ -3,7 +3,7 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::session::lock::lock;
+use crate::lock::lock;
 
 /// Room for one value.
 #[derive(Debug)]

@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
 use super::array::Array;
-
-/// Arrows, each from one point to another.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "ArrowMessage")]
-pub struct Arrow {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: ArrowProps,
-}
-
-about!(Arrow, node name);
+use super::envelope::NodeProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -38,20 +22,13 @@ pub struct ArrowProps {
     pub scale: f32,
 }
 
-impl Arrow {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: ArrowProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for ArrowProps {
+    const TYPE: &'static str = "ArrowMessage";
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Node;
     use super::super::golden::{captured, holds};
     use super::*;
 
@@ -71,6 +48,6 @@ mod tests {
             head_length: 0.15,
             scale: 1.0,
         };
-        holds(&Arrow::new("/arrows", props), name, 0);
+        holds(&Node::new("/arrows", props), name, 0);
     }
 }

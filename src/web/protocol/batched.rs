@@ -2,25 +2,9 @@
 
 use serde::Serialize;
 
-use super::about;
 use super::array::Array;
+use super::envelope::NodeProps;
 use super::props::Look;
-
-/// One solid in many places; a click says which.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "BatchedMeshesMessage")]
-pub struct Batched {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: BatchedProps,
-}
-
-about!(Batched, node name);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -48,20 +32,13 @@ pub struct BatchedProps {
     pub scale: f32,
 }
 
-impl Batched {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: BatchedProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for BatchedProps {
+    const TYPE: &'static str = "BatchedMeshesMessage";
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Node;
     use super::super::golden::{captured, holds};
     use super::*;
 
@@ -86,6 +63,6 @@ mod tests {
             batched_opacities: None,
             scale: 1.0,
         };
-        holds(&Batched::new("/batched", props), name, 0);
+        holds(&Node::new("/batched", props), name, 0);
     }
 }

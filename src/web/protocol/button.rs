@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::ControlProps;
 use super::props::Base;
-
-/// A button; a press sends the value true.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiButtonMessage")]
-pub struct Button {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// Always false; the client takes no notice.
-    pub value: bool,
-    /// How it looks.
-    pub props: ButtonProps,
-}
-
-about!(Button, gui uuid);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,8 +21,14 @@ pub struct ButtonProps {
     pub hold_callback_freqs: Vec<f64>,
 }
 
+impl ControlProps for ButtonProps {
+    const TYPE: &'static str = "GuiButtonMessage";
+    type Value = bool;
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{captured, container, holds, uuid};
     use super::*;
 
@@ -57,12 +47,7 @@ mod tests {
             icon_html: icon,
             hold_callback_freqs: Vec::new(),
         };
-        let button = Button {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            value: false,
-            props,
-        };
+        let button = Control::new(&uuid(name), &container(name), Some(false), props);
         holds(&button, name, 0);
     }
 }

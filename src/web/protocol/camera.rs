@@ -28,18 +28,6 @@ pub struct CameraLookAt {
 
 about!(CameraLookAt, "SetCameraLookAtMessage" of client);
 
-/// How wide the camera looks.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "SetCameraFovMessage")]
-pub struct CameraFov {
-    /// From top to bottom, in radians.
-    pub fov: f32,
-    /// Whether it is only for the start.
-    pub initial: bool,
-}
-
-about!(CameraFov, "SetCameraFovMessage" of client);
-
 #[cfg(test)]
 mod tests {
     use super::super::golden::holds;
@@ -65,6 +53,5 @@ mod tests {
             name,
             1,
         );
-        holds(&CameraFov { fov: 1.0, initial }, name, 3);
     }
 }

@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::ControlProps;
 use super::props::Base;
-
-/// A switch.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiCheckboxMessage")]
-pub struct Checkbox {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// Whether it is on.
-    pub value: bool,
-    /// How it looks.
-    pub props: CheckboxProps,
-}
-
-about!(Checkbox, gui uuid);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,8 +13,14 @@ pub struct CheckboxProps {
     pub base: Base,
 }
 
+impl ControlProps for CheckboxProps {
+    const TYPE: &'static str = "GuiCheckboxMessage";
+    type Value = bool;
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -40,12 +30,7 @@ mod tests {
         let props = CheckboxProps {
             base: Base::new(5.0, "checkbox"),
         };
-        let checkbox = Checkbox {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            value: true,
-            props,
-        };
+        let checkbox = Control::new(&uuid(name), &container(name), Some(true), props);
         holds(&checkbox, name, 0);
     }
 }

@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::ControlProps;
 use super::props::Base;
-
-/// A choice of one of many.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiDropdownMessage")]
-pub struct Dropdown {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// The one that is chosen.
-    pub value: String,
-    /// How it looks.
-    pub props: DropdownProps,
-}
-
-about!(Dropdown, gui uuid);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,8 +15,14 @@ pub struct DropdownProps {
     pub options: Vec<String>,
 }
 
+impl ControlProps for DropdownProps {
+    const TYPE: &'static str = "GuiDropdownMessage";
+    type Value = String;
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -45,12 +35,7 @@ mod tests {
             options,
         };
         let value = "beta".to_owned();
-        let dropdown = Dropdown {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            value,
-            props,
-        };
+        let dropdown = Control::new(&uuid(name), &container(name), Some(value), props);
         holds(&dropdown, name, 0);
     }
 }

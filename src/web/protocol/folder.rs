@@ -2,21 +2,7 @@
 
 use serde::Serialize;
 
-use super::about;
-
-/// A folder: a container with a heading.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiFolderMessage")]
-pub struct Folder {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// How it looks.
-    pub props: FolderProps,
-}
-
-about!(Folder, gui uuid);
+use super::envelope::ControlProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,8 +17,14 @@ pub struct FolderProps {
     pub expand_by_default: bool,
 }
 
+impl ControlProps for FolderProps {
+    const TYPE: &'static str = "GuiFolderMessage";
+    type Value = ();
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -45,11 +37,7 @@ mod tests {
             visible: true,
             expand_by_default: true,
         };
-        let folder = Folder {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            props,
-        };
+        let folder = Control::new(&uuid(name), &container(name), None, props);
         holds(&folder, name, 0);
     }
 }

@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::NodeProps;
 use super::props::Rgb;
-
-/// Lines on a plane.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GridMessage")]
-pub struct Grid {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: GridProps,
-}
-
-about!(Grid, node name);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -60,16 +44,8 @@ pub struct GridProps {
     pub scale: f32,
 }
 
-impl Grid {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: GridProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for GridProps {
+    const TYPE: &'static str = "GridMessage";
 }
 
 impl Default for GridProps {
@@ -98,6 +74,7 @@ impl Default for GridProps {
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Node;
     use super::super::golden::holds;
     use super::*;
 
@@ -110,6 +87,6 @@ mod tests {
             section_size: 2.0,
             ..GridProps::default()
         };
-        holds(&Grid::new("/grid", props), "s2c_052_scene_grid.bin", 0);
+        holds(&Node::new("/grid", props), "s2c_052_scene_grid.bin", 0);
     }
 }

@@ -2,21 +2,7 @@
 
 use serde::Serialize;
 
-use super::about;
-
-/// A piece of HTML. The client puts it into its page as it is.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiHtmlMessage")]
-pub struct Html {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// How it looks.
-    pub props: HtmlProps,
-}
-
-about!(Html, gui uuid);
+use super::envelope::ControlProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -29,8 +15,14 @@ pub struct HtmlProps {
     pub visible: bool,
 }
 
+impl ControlProps for HtmlProps {
+    const TYPE: &'static str = "GuiHtmlMessage";
+    type Value = ();
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -43,11 +35,7 @@ mod tests {
             content,
             visible: true,
         };
-        let html = Html {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            props,
-        };
+        let html = Control::new(&uuid(name), &container(name), None, props);
         holds(&html, name, 0);
     }
 }

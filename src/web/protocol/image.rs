@@ -3,21 +3,7 @@
 use serde::Serialize;
 use serde_bytes::ByteBuf;
 
-use super::about;
-
-/// An encoded picture, shown at its own size.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiImageMessage")]
-pub struct Image {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// How it looks.
-    pub props: ImageProps,
-}
-
-about!(Image, gui uuid);
+use super::envelope::ControlProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,8 +22,14 @@ pub struct ImageProps {
     pub visible: bool,
 }
 
+impl ControlProps for ImageProps {
+    const TYPE: &'static str = "GuiImageMessage";
+    type Value = ();
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{captured, container, holds, uuid};
     use super::*;
 
@@ -54,11 +46,7 @@ mod tests {
             format: "png",
             visible: true,
         };
-        let image = Image {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            props,
-        };
+        let image = Control::new(&uuid(name), &container(name), None, props);
         holds(&image, name, 0);
     }
 }

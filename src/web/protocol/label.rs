@@ -2,23 +2,7 @@
 
 use serde::Serialize;
 
-use super::about;
-
-/// Text in the scene.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "LabelMessage")]
-pub struct Label {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: LabelProps,
-}
-
-about!(Label, node name);
+use super::envelope::NodeProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -37,20 +21,13 @@ pub struct LabelProps {
     pub anchor: &'static str,
 }
 
-impl Label {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: LabelProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for LabelProps {
+    const TYPE: &'static str = "LabelMessage";
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Node;
     use super::super::golden::holds;
     use super::*;
 
@@ -65,7 +42,7 @@ mod tests {
             anchor: "bottom-center",
         };
         holds(
-            &Label::new("/box/label", props),
+            &Node::new("/box/label", props),
             "s2c_068_scene_label.bin",
             0,
         );

@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
 use super::array::Array;
-
-/// Straight lines, each from one point to another.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "LineSegmentsMessage")]
-pub struct Lines {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: LinesProps,
-}
-
-about!(Lines, node name);
+use super::envelope::NodeProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,20 +20,13 @@ pub struct LinesProps {
     pub thickness_units: &'static str,
 }
 
-impl Lines {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: LinesProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for LinesProps {
+    const TYPE: &'static str = "LineSegmentsMessage";
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Node;
     use super::super::golden::{captured, holds};
     use super::*;
 
@@ -68,6 +45,6 @@ mod tests {
             scale: 1.0,
             thickness_units: "world",
         };
-        holds(&Lines::new("/segments1", props), name, 0);
+        holds(&Node::new("/segments1", props), name, 0);
     }
 }

@@ -2,21 +2,7 @@
 
 use serde::Serialize;
 
-use super::about;
-
-/// Text with Markdown. What is in it is not made safe by the client.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiMarkdownMessage")]
-pub struct Markdown {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// How it looks.
-    pub props: MarkdownProps,
-}
-
-about!(Markdown, gui uuid);
+use super::envelope::ControlProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,8 +16,14 @@ pub struct MarkdownProps {
     pub visible: bool,
 }
 
+impl ControlProps for MarkdownProps {
+    const TYPE: &'static str = "GuiMarkdownMessage";
+    type Value = ();
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -44,11 +36,7 @@ mod tests {
             markdown: text.to_owned(),
             visible: true,
         };
-        let markdown = Markdown {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            props,
-        };
+        let markdown = Control::new(&uuid(name), &container(name), None, props);
         holds(&markdown, name, 0);
     }
 }

@@ -2,8 +2,6 @@
 
 use serde::Serialize;
 
-use super::about;
-
 /// Shows it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "type", rename = "NotificationShowMessage")]
@@ -13,8 +11,6 @@ pub struct Notification {
     /// What it says and how.
     pub props: NotificationProps,
 }
-
-about!(Notification, note uuid);
 
 /// What it says and how.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,8 +36,6 @@ pub struct RemoveNotification {
     /// Its name.
     pub uuid: String,
 }
-
-about!(RemoveNotification, note uuid);
 
 #[cfg(test)]
 mod tests {

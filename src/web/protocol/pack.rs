@@ -140,19 +140,9 @@ pub fn entries(map: &[u8]) -> Option<Vec<(&str, &[u8])>> {
         .collect()
 }
 
-/// Writes the head of a map.
-pub fn put_map(out: &mut Vec<u8>, count: usize) {
-    match count {
-        0..=15 => out.push(0x80 | count as u8),
-        16..=0xffff => {
-            out.push(0xde);
-            out.extend((count as u16).to_be_bytes());
-        }
-        _ => {
-            out.push(0xdf);
-            out.extend((count as u32).to_be_bytes());
-        }
-    }
+/// Writes the head of a map of at most 15 entries.
+pub fn put_map(out: &mut Vec<u8>, count: u8) {
+    out.push(0x80 | count.min(15));
 }
 
 /// Writes the head of an array.
@@ -172,10 +162,7 @@ pub fn put_array(out: &mut Vec<u8>, count: usize) {
 
 /// Writes text of less than 256 bytes; longer text is cut.
 pub fn put_name(out: &mut Vec<u8>, text: &str) {
-    let mut end = text.len().min(255);
-    while !text.is_char_boundary(end) {
-        end -= 1;
-    }
+    let end = text.floor_char_boundary(255);
     out.extend([0xd9, end as u8]);
     out.extend(&text.as_bytes()[..end]);
 }

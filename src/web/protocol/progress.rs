@@ -2,23 +2,7 @@
 
 use serde::Serialize;
 
-use super::about;
-
-/// A bar from 0 to 100.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiProgressBarMessage")]
-pub struct ProgressBar {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// 0 to 100.
-    pub value: f64,
-    /// How it looks.
-    pub props: ProgressBarProps,
-}
-
-about!(ProgressBar, gui uuid);
+use super::envelope::ControlProps;
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -33,8 +17,14 @@ pub struct ProgressBarProps {
     pub visible: bool,
 }
 
+impl ControlProps for ProgressBarProps {
+    const TYPE: &'static str = "GuiProgressBarMessage";
+    type Value = f64;
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -47,12 +37,7 @@ mod tests {
             color: Some("cyan".to_owned()),
             visible: true,
         };
-        let bar = ProgressBar {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            value: 35.0,
-            props,
-        };
+        let bar = Control::new(&uuid(name), &container(name), Some(35.0), props);
         holds(&bar, name, 0);
     }
 }

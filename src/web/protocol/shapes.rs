@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::NodeProps;
 use super::props::{Look, Rgb};
-
-/// A box around its middle.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "BoxMessage")]
-pub struct Cuboid {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: CuboidProps,
-}
-
-about!(Cuboid, node name);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,33 +19,9 @@ pub struct CuboidProps {
     pub scale: f32,
 }
 
-impl Cuboid {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: CuboidProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for CuboidProps {
+    const TYPE: &'static str = "BoxMessage";
 }
-
-/// A ball.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "IcosphereMessage")]
-pub struct Ball {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: BallProps,
-}
-
-about!(Ball, node name);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -79,33 +39,9 @@ pub struct BallProps {
     pub scale: f32,
 }
 
-impl Ball {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: BallProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for BallProps {
+    const TYPE: &'static str = "IcosphereMessage";
 }
-
-/// A cylinder along z around its middle.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "CylinderMessage")]
-pub struct Cylinder {
-    /// Its path.
-    pub name: String,
-    /// Whose it is; empty for everybody's.
-    pub owner: String,
-    /// Whether it only holds a place.
-    pub r#virtual: bool,
-    /// How it looks.
-    pub props: CylinderProps,
-}
-
-about!(Cylinder, node name);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -125,20 +61,13 @@ pub struct CylinderProps {
     pub scale: f32,
 }
 
-impl Cylinder {
-    /// Everybody's, at a path.
-    pub fn new(name: &str, props: CylinderProps) -> Self {
-        Self {
-            name: name.to_owned(),
-            owner: String::new(),
-            r#virtual: false,
-            props,
-        }
-    }
+impl NodeProps for CylinderProps {
+    const TYPE: &'static str = "CylinderMessage";
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Node;
     use super::super::golden::holds;
     use super::*;
 
@@ -154,7 +83,7 @@ mod tests {
             look,
             scale: 1.0,
         };
-        holds(&Cuboid::new("/box", props), "s2c_055_scene_box.bin", 0);
+        holds(&Node::new("/box", props), "s2c_055_scene_box.bin", 0);
         let look = Look {
             opacity: Some(0.6),
             ..Look::default()
@@ -166,7 +95,7 @@ mod tests {
             look,
             scale: 1.0,
         };
-        holds(&Ball::new("/ico", props), "s2c_056_scene_icosphere.bin", 0);
+        holds(&Node::new("/ico", props), "s2c_056_scene_icosphere.bin", 0);
         let props = CylinderProps {
             radius: 0.3,
             height: 0.9,
@@ -175,10 +104,6 @@ mod tests {
             look: Look::default(),
             scale: 1.0,
         };
-        holds(
-            &Cylinder::new("/cyl", props),
-            "s2c_057_scene_cylinder.bin",
-            0,
-        );
+        holds(&Node::new("/cyl", props), "s2c_057_scene_cylinder.bin", 0);
     }
 }

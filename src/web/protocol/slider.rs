@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::ControlProps;
 use super::props::Base;
-
-/// A slider with a number box.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiSliderMessage")]
-pub struct Slider {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// What it holds.
-    pub value: f64,
-    /// How it looks.
-    pub props: SliderProps,
-}
-
-about!(Slider, gui uuid);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,6 +24,11 @@ pub struct SliderProps {
     pub marks: Option<Vec<Mark>>,
 }
 
+impl ControlProps for SliderProps {
+    const TYPE: &'static str = "GuiSliderMessage";
+    type Value = f64;
+}
+
 /// A label under a slider.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Mark {
@@ -51,6 +40,7 @@ pub struct Mark {
 
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -76,12 +66,7 @@ mod tests {
                 mark(1.0, Some("hi")),
             ]),
         };
-        let slider = Slider {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            value: 0.25,
-            props,
-        };
+        let slider = Control::new(&uuid(name), &container(name), Some(0.25), props);
         holds(&slider, name, 0);
     }
 }

@@ -2,24 +2,8 @@
 
 use serde::Serialize;
 
-use super::about;
+use super::envelope::ControlProps;
 use super::props::Base;
-
-/// A line of text to type.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiTextMessage")]
-pub struct Text {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// What it holds.
-    pub value: String,
-    /// How it looks.
-    pub props: TextProps,
-}
-
-about!(Text, gui uuid);
 
 /// How it looks.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -31,8 +15,14 @@ pub struct TextProps {
     pub multiline: bool,
 }
 
+impl ControlProps for TextProps {
+    const TYPE: &'static str = "GuiTextMessage";
+    type Value = String;
+}
+
 #[cfg(test)]
 mod tests {
+    use super::super::envelope::Control;
     use super::super::golden::{container, holds, uuid};
     use super::*;
 
@@ -44,12 +34,7 @@ mod tests {
             multiline: false,
         };
         let value = "hello".to_owned();
-        let text = Text {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            value,
-            props,
-        };
+        let text = Control::new(&uuid(name), &container(name), Some(value), props);
         holds(&text, name, 0);
     }
 }

@@ -4,22 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::about;
 use super::array::Array;
-
-/// A chart, drawn by uPlot.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-#[serde(tag = "type", rename = "GuiUplotMessage")]
-pub struct Uplot {
-    /// Its name, the same on every connection.
-    pub uuid: String,
-    /// Where it stands.
-    pub container_uuid: String,
-    /// What it shows.
-    pub props: UplotProps,
-}
-
-about!(Uplot, gui uuid);
+use super::envelope::ControlProps;
 
 /// What it shows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -54,6 +40,11 @@ pub struct UplotProps {
     pub padding: Option<[i32; 4]>,
     /// Whether it is there at all.
     pub visible: bool,
+}
+
+impl ControlProps for UplotProps {
+    const TYPE: &'static str = "GuiUplotMessage";
+    type Value = ();
 }
 
 /// A column. One with gaps cannot be a buffer: the client draws a line over what is not a number.
@@ -186,6 +177,7 @@ pub struct Focus {
 mod tests {
     #![expect(clippy::unwrap_used, reason = "a test may stop here")]
 
+    use super::super::envelope::Control;
     use super::super::golden::{captured, container, holds, sent, uuid};
     use super::*;
 
@@ -256,11 +248,7 @@ mod tests {
             visible: true,
             ..UplotProps::default()
         };
-        let chart = Uplot {
-            uuid: uuid(name),
-            container_uuid: container(name),
-            props,
-        };
+        let chart = Control::new(&uuid(name), &container(name), None, props);
         holds(&chart, name, 0);
     }
 

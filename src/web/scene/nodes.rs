@@ -3,9 +3,10 @@
 use crate::web::piece::Piece;
 use crate::web::protocol::Message;
 use crate::web::protocol::array::Array;
-use crate::web::protocol::arrow::{Arrow, ArrowProps};
-use crate::web::protocol::label::{Label, LabelProps};
-use crate::web::protocol::lines::{Lines, LinesProps};
+use crate::web::protocol::arrow::ArrowProps;
+use crate::web::protocol::envelope::{Node, NodeProps};
+use crate::web::protocol::label::LabelProps;
+use crate::web::protocol::lines::LinesProps;
 use crate::web::protocol::pose::{Orientation, Position, Visibility};
 use crate::web::protocol::props::Rgb;
 
@@ -30,8 +31,8 @@ impl Nodes {
     }
 
     /// Adds a node at a place, turned around z by so many radians; unseen without a place.
-    pub fn put(&mut self, name: &str, node: &impl Message, place: Option<(Point, f32)>) {
-        self.add(node);
+    pub fn put(&mut self, name: &str, props: impl NodeProps, place: Option<(Point, f32)>) {
+        self.add(&Node::new(name, props));
         let (name, owner) = (name.to_owned(), String::new());
         if let Some((position, yaw)) = place {
             self.add(&Position {
@@ -64,7 +65,7 @@ impl Nodes {
             thickness_units: "screen",
         };
         let here = (!ends.is_empty()).then_some(([0.0; 3], 0.0));
-        self.put(name, &Lines::new(name, props), here);
+        self.put(name, props, here);
     }
 
     /// Adds an arrow; unseen without one.
@@ -77,11 +78,7 @@ impl Nodes {
             head_length: 0.008,
             scale: 1.0,
         };
-        self.put(
-            name,
-            &Arrow::new(name, props),
-            ends.map(|_| ([0.0; 3], 0.0)),
-        );
+        self.put(name, props, ends.map(|_| ([0.0; 3], 0.0)));
     }
 
     /// Adds text at a place; unseen without one.
@@ -94,11 +91,7 @@ impl Nodes {
             depth_test: false,
             anchor: "bottom-center",
         };
-        self.put(
-            name,
-            &Label::new(name, props),
-            place.map(|place| (place, 0.0)),
-        );
+        self.put(name, props, place.map(|place| (place, 0.0)));
     }
 }
 

@@ -3,18 +3,19 @@
 use super::names::uuid;
 use crate::web::piece::Piece;
 use crate::web::protocol::ROOT;
-use crate::web::protocol::button::{Button, ButtonProps};
-use crate::web::protocol::checkbox::{Checkbox, CheckboxProps};
-use crate::web::protocol::dropdown::{Dropdown, DropdownProps};
-use crate::web::protocol::folder::{Folder, FolderProps};
-use crate::web::protocol::html::{Html, HtmlProps};
-use crate::web::protocol::image::{Image, ImageProps};
-use crate::web::protocol::markdown::{Markdown, MarkdownProps};
-use crate::web::protocol::progress::{ProgressBar, ProgressBarProps};
+use crate::web::protocol::button::ButtonProps;
+use crate::web::protocol::checkbox::CheckboxProps;
+use crate::web::protocol::dropdown::DropdownProps;
+use crate::web::protocol::envelope::{Control, ControlProps};
+use crate::web::protocol::folder::FolderProps;
+use crate::web::protocol::html::HtmlProps;
+use crate::web::protocol::image::ImageProps;
+use crate::web::protocol::markdown::MarkdownProps;
+use crate::web::protocol::progress::ProgressBarProps;
 use crate::web::protocol::props::Base;
-use crate::web::protocol::slider::{Slider, SliderProps};
-use crate::web::protocol::text::{Text, TextProps};
-use crate::web::protocol::uplot::{Uplot, UplotProps};
+use crate::web::protocol::slider::SliderProps;
+use crate::web::protocol::text::TextProps;
+use crate::web::protocol::uplot::UplotProps;
 
 /// Elements, one after the other.
 pub struct Panel {
@@ -63,6 +64,11 @@ impl Panel {
         self.order
     }
 
+    fn put<P: ControlProps>(&mut self, name: &str, value: Option<P::Value>, props: P) {
+        let control = Control::new(&uuid(name), &self.container, value, props);
+        self.pieces.push(Piece::of(&control));
+    }
+
     fn base(&mut self, label: &str, hint: &str) -> Base {
         Base {
             hint: (!hint.is_empty()).then(|| hint.to_owned()),
@@ -80,13 +86,9 @@ impl Panel {
             visible: true,
             expand_by_default: open,
         };
-        let folder = Folder {
-            uuid: uuid(name),
-            container_uuid: ROOT.to_owned(),
-            props,
-        };
-        self.container.clone_from(&folder.uuid);
-        self.pieces.push(Piece::of(&folder));
+        self.root();
+        self.put(name, None, props);
+        self.container = uuid(name);
     }
 
     /// What follows is in the root again.
@@ -106,13 +108,7 @@ impl Panel {
             base: self.base(label, hint),
             options,
         };
-        let (uuid, container_uuid, value) = (uuid(name), self.container.clone(), value.to_owned());
-        self.pieces.push(Piece::of(&Dropdown {
-            uuid,
-            container_uuid,
-            value,
-            props,
-        }));
+        self.put(name, Some(value.to_owned()), props);
     }
 
     /// A slider, dead where `enabled` is false.
@@ -134,13 +130,7 @@ impl Panel {
             precision: u8::from(range.step < 1.0),
             marks: Some(Vec::new()),
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Slider {
-            uuid,
-            container_uuid,
-            value,
-            props,
-        }));
+        self.put(name, Some(value), props);
     }
 
     /// A switch, dead where `enabled` is false.
@@ -154,13 +144,7 @@ impl Panel {
         let mut base = self.base(label, hint);
         base.disabled |= !enabled;
         let props = CheckboxProps { base };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Checkbox {
-            uuid,
-            container_uuid,
-            value,
-            props,
-        }));
+        self.put(name, Some(value), props);
     }
 
     /// A button.
@@ -173,13 +157,7 @@ impl Panel {
             icon_html: None,
             hold_callback_freqs,
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Button {
-            uuid,
-            container_uuid,
-            value: false,
-            props,
-        }));
+        self.put(name, Some(false), props);
     }
 
     /// Markdown; the text is safe already.
@@ -189,12 +167,7 @@ impl Panel {
             markdown,
             visible: true,
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Markdown {
-            uuid,
-            container_uuid,
-            props,
-        }));
+        self.put(name, None, props);
     }
 
     /// HTML; the text is safe already.
@@ -204,12 +177,7 @@ impl Panel {
             content,
             visible: true,
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Html {
-            uuid,
-            container_uuid,
-            props,
-        }));
+        self.put(name, None, props);
     }
 
     /// A picture; none shows nothing.
@@ -221,12 +189,7 @@ impl Panel {
             data: png.map(Into::into),
             format: "png",
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Image {
-            uuid,
-            container_uuid,
-            props,
-        }));
+        self.put(name, None, props);
     }
 
     /// A bar, seen while there is something to wait for.
@@ -237,13 +200,7 @@ impl Panel {
             color: None,
             visible,
         };
-        let (uuid, container_uuid, value) = (uuid(name), self.container.clone(), percent);
-        self.pieces.push(Piece::of(&ProgressBar {
-            uuid,
-            container_uuid,
-            value,
-            props,
-        }));
+        self.put(name, Some(percent), props);
     }
 
     /// A chart.
@@ -252,12 +209,7 @@ impl Panel {
             order: self.next(),
             ..props
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Uplot {
-            uuid,
-            container_uuid,
-            props,
-        }));
+        self.put(name, None, props);
     }
 
     /// Text that only our own client looks at.
@@ -270,12 +222,6 @@ impl Panel {
             base,
             multiline: false,
         };
-        let (uuid, container_uuid) = (uuid(name), self.container.clone());
-        self.pieces.push(Piece::of(&Text {
-            uuid,
-            container_uuid,
-            value,
-            props,
-        }));
+        self.put(name, Some(value), props);
     }
 }

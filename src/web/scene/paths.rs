@@ -6,7 +6,7 @@ use super::table::{ABOVE, BELIEF, PREDICTION, above, at_step};
 use crate::measure::ellipse::{Ellipse, SIGMAS_OF_95_PERCENT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 use crate::web::protocol::array::Array;
-use crate::web::protocol::batched::{Batched, BatchedProps};
+use crate::web::protocol::batched::BatchedProps;
 use crate::web::protocol::node::{Binding, Clicks};
 use crate::web::protocol::props::Look;
 
@@ -92,7 +92,7 @@ fn steps(nodes: &mut Nodes, truth: &[Point]) {
         scale: 1.0,
     };
     let here = (!truth.is_empty()).then_some(([0.0; 3], 0.0));
-    nodes.put(PATH_POINTS, &Batched::new(PATH_POINTS, props), here);
+    nodes.put(PATH_POINTS, props, here);
     nodes.add(&Clicks {
         name: PATH_POINTS.to_owned(),
         bindings: vec![Binding {

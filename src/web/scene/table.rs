@@ -4,10 +4,10 @@ use super::nodes::{Nodes, Point};
 use crate::episode::{PLATE_M as PLATE, TIP_HEIGHT_M as TIP_HEIGHT};
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 use crate::web::protocol::camera::{CameraLookAt, CameraPosition};
-use crate::web::protocol::grid::{Grid, GridProps};
+use crate::web::protocol::grid::GridProps;
 use crate::web::protocol::pose::Visibility;
 use crate::web::protocol::props::Look;
-use crate::web::protocol::shapes::{Ball, BallProps, Cuboid, CuboidProps, Cylinder, CylinderProps};
+use crate::web::protocol::shapes::{BallProps, CuboidProps, CylinderProps};
 
 /// The prediction's colour.
 pub const PREDICTION: [u8; 3] = [0x56, 0xB4, 0xE9];
@@ -47,7 +47,7 @@ pub fn add(nodes: &mut Nodes, snapshot: &Snapshot) {
         scale: 1.0,
     };
     let place = Some(([x, y, -0.006], 0.0));
-    nodes.put("/table", &Cuboid::new("/table", table), place);
+    nodes.put("/table", table, place);
     let grid = GridProps {
         width: side,
         height: side,
@@ -56,11 +56,7 @@ pub fn add(nodes: &mut Nodes, snapshot: &Snapshot) {
         cell_color: [190; 3],
         ..GridProps::default()
     };
-    nodes.put(
-        "/table/grid",
-        &Grid::new("/table/grid", grid),
-        Some(([0.0, 0.0, 0.006], 0.0)),
-    );
+    nodes.put("/table/grid", grid, Some(([0.0, 0.0, 0.006], 0.0)));
 
     things(nodes, snapshot, flat);
 }
@@ -78,11 +74,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
         scale: 1.0,
     };
     let at = pose.map(|pose| ([pose.x, pose.y, middle], pose.yaw));
-    nodes.put(
-        "/plate",
-        &Cuboid::new("/plate", plate([150, 160, 172], flat.clone())),
-        at,
-    );
+    nodes.put("/plate", plate([150, 160, 172], flat.clone()), at);
     // A stripe, so that it is seen how the plate is turned.
     let stripe = CuboidProps {
         dimensions: [0.5 * PLATE[0], 0.006, 0.001],
@@ -91,7 +83,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
         scale: 1.0,
     };
     let on_top = Some(([0.25 * PLATE[0], 0.0, middle + 0.000_5], 0.0));
-    nodes.put("/plate/top", &Cuboid::new("/plate/top", stripe), on_top);
+    nodes.put("/plate/top", stripe, on_top);
 
     let tip = position.and_then(|position| position.tip.get(cursor));
     let props = CylinderProps {
@@ -104,7 +96,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
     };
     nodes.put(
         "/tip",
-        &Cylinder::new("/tip", props),
+        props,
         tip.map(|&[x, y]| ([x, y, 0.5 * TIP_HEIGHT], 0.0)),
     );
 
@@ -117,11 +109,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
         ..Look::default()
     };
     let at = predicted.map(|estimate| ([estimate.x, estimate.y, middle + 0.001], yaw));
-    nodes.put(
-        "/predicted",
-        &Cuboid::new("/predicted", plate(PREDICTION, ghost)),
-        at,
-    );
+    nodes.put("/predicted", plate(PREDICTION, ghost), at);
 
     let believed = position.and_then(|position| at_step(&position.belief, cursor));
     let props = BallProps {
@@ -131,11 +119,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
         look: Look::default(),
         scale: 1.0,
     };
-    nodes.put(
-        "/believed",
-        &Ball::new("/believed", props),
-        believed.map(|it| (above(&it), 0.0)),
-    );
+    nodes.put("/believed", props, believed.map(|it| (above(&it), 0.0)));
 }
 
 /// The estimate at a step.

@@ -27,44 +27,8 @@ impl Transposes {
     }
 }
 
-/// Gradients of what the products of each step put out, a row for each step.
-pub struct Pull {
-    gates: Vec<f32>,
-    recurrent: Vec<f32>,
-    head: Vec<f32>,
-    mapped: Vec<f32>,
-}
-
-/// Some rows of a [`Pull`].
-pub struct PullRows<'a> {
-    gates: &'a mut [f32],
-    recurrent: &'a mut [f32],
-    head: &'a mut [f32],
-    mapped: &'a mut [f32],
-}
-
-impl Pull {
-    /// Room for `rows`.
-    pub fn new(sizes: Sizes, rows: usize) -> Self {
-        Self {
-            gates: vec![0.0; rows * 3 * sizes.hidden],
-            recurrent: vec![0.0; rows * 3 * sizes.hidden],
-            head: vec![0.0; rows * sizes.head()],
-            mapped: vec![0.0; rows * sizes.maps()],
-        }
-    }
-
-    /// These rows.
-    pub fn rows(&mut self, sizes: Sizes, rows: Range<usize>) -> PullRows<'_> {
-        let part = |width: usize| rows.start * width..rows.end * width;
-        PullRows {
-            gates: &mut self.gates[part(3 * sizes.hidden)],
-            recurrent: &mut self.recurrent[part(3 * sizes.hidden)],
-            head: &mut self.head[part(sizes.head())],
-            mapped: &mut self.mapped[part(sizes.maps())],
-        }
-    }
-}
+/// Gradients of what the products of each step put out, a row for each step: as many as the tape has values.
+pub use super::forward::{Tape as Pull, TapeRows as PullRows};
 
 /// Gradients of the new state, the mean and the log-variance.
 pub struct Upstream<'a> {

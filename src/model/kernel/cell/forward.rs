@@ -10,10 +10,10 @@ use crate::model::kernel::vectorised;
 /// What steps leave for the backward pass, a row for each.
 #[derive(Debug)]
 pub struct Tape {
-    gates: Vec<f32>,
-    recurrent: Vec<f32>,
-    head: Vec<f32>,
-    mapped: Vec<f32>,
+    pub(super) gates: Vec<f32>,
+    pub(super) recurrent: Vec<f32>,
+    pub(super) head: Vec<f32>,
+    pub(super) mapped: Vec<f32>,
 }
 
 /// Some rows of a [`Tape`].
