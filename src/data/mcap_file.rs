@@ -15,7 +15,7 @@ use super::chunk::{parse, unpack};
 use super::collect::{Collector, Stream};
 use super::error::DataError;
 use super::index::{Index, Span};
-use super::record::{LENGTH_LIMIT, Records, split_message, split_whole_message};
+use super::record::{LENGTH_LIMIT, Records, split_message};
 use super::report::LeftOut;
 use super::topics::{Role, Topics};
 use super::{scan, streams, summary};
@@ -166,13 +166,17 @@ impl McapFile {
             let block = cache.get((self.number, span.offset), || {
                 self.read_span(&mut file, span)
             })?;
-            self.each_message(span, &block, |id, stream, log, payload| {
+            self.each_message(span, &block, |header, payload| {
+                let Some(&stream) = self.streams.get(&header.channel_id) else {
+                    return Ok(());
+                };
+                let log = header.log_time;
                 if !(start..=end).contains(&log) {
                     return Ok(());
                 }
                 collector
                     .push(stream, log, payload)
-                    .map_err(|what| self.bad_message(span, id, log, what))
+                    .map_err(|what| self.bad_message(span, header.channel_id, log, what))
             })?;
         }
         Ok(collector.finish(meta.clone()))
@@ -192,14 +196,7 @@ impl McapFile {
             let block = cache.get((self.number, span.offset), || {
                 self.read_span(&mut file, span)
             })?;
-            for record in Records::new(&block) {
-                let (opcode, body) = record.map_err(|what| self.damaged(span.offset, what))?;
-                if opcode != op::MESSAGE {
-                    continue;
-                }
-                let Some((header, payload)) = split_whole_message(body) else {
-                    return Err(self.damaged(span.offset, "a message without a head".to_owned()));
-                };
+            self.each_message(span, &block, |header, payload| {
                 if (start..=end).contains(&header.log_time) {
                     let until = payload.as_ptr_range().end.addr() - block.as_ptr().addr();
                     messages.push(Raw {
@@ -208,7 +205,8 @@ impl McapFile {
                         block: Arc::clone(&block),
                     });
                 }
-            }
+                Ok(())
+            })?;
         }
         messages.sort_by_key(|message| message.header.log_time);
         Ok(messages)
@@ -226,9 +224,10 @@ impl McapFile {
             let mut seen = Vec::new();
             if span.message_indexes.is_empty() {
                 let block = self.read_span(&mut file, span)?;
-                self.each_message(span, &block, |_, stream, log, _| {
-                    if stream.role == Role::Vision {
-                        seen.push(log);
+                self.each_message(span, &block, |header, _| {
+                    let stream = self.streams.get(&header.channel_id);
+                    if stream.is_some_and(|stream| stream.role == Role::Vision) {
+                        seen.push(header.log_time);
                     }
                     Ok(())
                 })?;
@@ -279,24 +278,22 @@ impl McapFile {
         unpack(&bytes).map_err(|what| self.damaged(span.offset, what))
     }
 
-    /// Calls `each` with the messages of readable channels in a block: channel, stream, log time, payload.
+    /// Calls `each` with the messages of a block, whether their channels can be read or not.
     fn each_message(
         &self,
         span: &Span,
         block: &[u8],
-        mut each: impl FnMut(u16, Stream, u64, &[u8]) -> Result<(), DataError>,
+        mut each: impl FnMut(MessageHeader, &[u8]) -> Result<(), DataError>,
     ) -> Result<(), DataError> {
         for record in Records::new(block) {
             let (opcode, body) = record.map_err(|what| self.damaged(span.offset, what))?;
             if opcode != op::MESSAGE {
                 continue;
             }
-            let Some((id, log_time, payload)) = split_message(body) else {
+            let Some((header, payload)) = split_message(body) else {
                 return Err(self.damaged(span.offset, "a message without a head".to_owned()));
             };
-            if let Some(&stream) = self.streams.get(&id) {
-                each(id, stream, log_time, payload)?;
-            }
+            each(header, payload)?;
         }
         Ok(())
     }

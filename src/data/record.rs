@@ -21,8 +21,9 @@ pub(super) fn put_record(bytes: &mut Vec<u8>, opcode: u8, body: &[u8]) {
     bytes.extend_from_slice(body);
 }
 
-/// All of a message.
-pub(super) fn split_whole_message(body: &[u8]) -> Option<(MessageHeader, &[u8])> {
+/// Splits a message into its head and its payload. Read here by hand, since a chunk holds tens of thousands and most are
+/// of other episodes.
+pub(super) fn split_message(body: &[u8]) -> Option<(MessageHeader, &[u8])> {
     let (channel, rest) = body.split_first_chunk::<2>()?;
     let (sequence, rest) = rest.split_first_chunk::<4>()?;
     let (log_time, rest) = rest.split_first_chunk::<8>()?;
@@ -34,20 +35,6 @@ pub(super) fn split_whole_message(body: &[u8]) -> Option<(MessageHeader, &[u8])>
         publish_time: u64::from_le_bytes(*publish_time),
     };
     Some((header, payload))
-}
-
-/// The head of a message: channel, log time, payload. Read here by hand, since a chunk holds tens of thousands and
-/// most are of other episodes.
-pub(super) fn split_message(body: &[u8]) -> Option<(u16, u64, &[u8])> {
-    let (channel, rest) = body.split_first_chunk::<2>()?;
-    let (_sequence, rest) = rest.split_first_chunk::<4>()?;
-    let (log_time, rest) = rest.split_first_chunk::<8>()?;
-    let (_publish_time, payload) = rest.split_first_chunk::<8>()?;
-    Some((
-        u16::from_le_bytes(*channel),
-        u64::from_le_bytes(*log_time),
-        payload,
-    ))
 }
 
 /// Walks the records of a block of bytes: opcode, body.

@@ -177,9 +177,9 @@ impl Seen {
                 index.describe(parse(opcode, body)?);
                 continue;
             }
-            let (channel, log_time, _) = split_message(body).ok_or("a message without a head")?;
-            *self.counts.entry(channel).or_default() += 1;
-            widen(&mut self.log_times, (log_time, log_time));
+            let (header, _) = split_message(body).ok_or("a message without a head")?;
+            *self.counts.entry(header.channel_id).or_default() += 1;
+            widen(&mut self.log_times, (header.log_time, header.log_time));
         }
         Ok(())
     }

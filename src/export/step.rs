@@ -5,7 +5,7 @@ use crate::measure::frame::squared_error;
 use crate::modality::Expert;
 use crate::session::snapshot::reading::{ExpertReading, SeriesView};
 use crate::session::snapshot::{
-    Badge, Estimate, ExpertView, LatentView, PositionView, Snapshot, StripCell,
+    Badge, Estimate, ExpertView, LatentView, PositionView, Snapshot, StripCell, estimate_at,
 };
 
 use super::{ModelOrigin, Run};
@@ -95,12 +95,12 @@ impl<'a> Step<'a> {
 
     /// Position read from the belief.
     pub fn belief(&self) -> Option<Estimate> {
-        *self.position()?.belief.get(self.at.cursor)?
+        estimate_at(&self.position()?.belief, self.at.cursor)
     }
 
     /// Position read from the prediction.
     pub fn prediction(&self) -> Option<Estimate> {
-        *self.position()?.prediction.get(self.at.cursor)?
+        estimate_at(&self.position()?.prediction, self.at.cursor)
     }
 
     /// The frames of the step.

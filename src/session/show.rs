@@ -8,7 +8,7 @@ use super::settings::{Rollout, Settings};
 use super::snapshot::other::OtherView;
 use super::snapshot::{
     Badge, ErrorOf, Estimate, ExpertView, FrameRow, LatentView, Message, ModelInfo, PositionView,
-    SignedFrame, Snapshot,
+    SignedFrame, Snapshot, estimate_at,
 };
 use super::worker::{Answer, Inferred, Opened, Pictures};
 use crate::episode::{EpisodeSource, Frame};
@@ -249,8 +249,8 @@ fn position_view(opened: &Opened, pictures: &Pictures, cursor: usize) -> Option<
     let belief = Arc::clone(pictures.belief_positions.as_ref()?);
     let prediction = pictures.rollout_positions.clone().unwrap_or_default();
     let error_m = |estimates: &[Option<Estimate>]| {
-        let (estimate, truth) = ((*estimates.get(cursor)?)?, opened.poses.get(cursor)?);
-        Some(estimate.distance_m(*truth))
+        let (estimate, truth) = (estimate_at(estimates, cursor)?, opened.poses.get(cursor)?);
+        Some(estimate.distance_m([truth.x, truth.y]))
     };
     Some(PositionView {
         truth: Arc::clone(&opened.poses),

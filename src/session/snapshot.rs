@@ -21,6 +21,7 @@ use crate::measure::corruption::Corruption;
 use crate::modality::{Expert, ExpertSet, Modality};
 use board::BoardView;
 use lattice::LatticeView;
+pub use lookups::estimate_at;
 use other::OtherView;
 use reading::{FusionView, SeriesView};
 use response::ResponseView;
@@ -191,6 +192,13 @@ pub struct LatentView {
     pub log_var: Vec<f32>,
 }
 
+impl LatentView {
+    /// Mean standard deviation over the dimensions.
+    pub fn mean_sigma(&self) -> f32 {
+        self.sigma.iter().sum::<f32>() / self.sigma.len().max(1) as f32
+    }
+}
+
 /// Whether the switches at the cursor were in the model's training.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub enum Badge {
@@ -302,9 +310,9 @@ impl Estimate {
         }
     }
 
-    /// Its distance from a pose, in metres.
-    pub fn distance_m(&self, truth: PlanarPose) -> f32 {
-        (self.x - truth.x).hypot(self.y - truth.y)
+    /// Its distance from a place, in metres.
+    pub fn distance_m(&self, [x, y]: [f32; 2]) -> f32 {
+        (self.x - x).hypot(self.y - y)
     }
 }
 

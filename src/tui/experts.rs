@@ -24,7 +24,7 @@ use super::theme::{WARNING, dim, strong};
 use super::view::Pane;
 use crate::measure::corruption::{Corruption, Damage};
 use crate::modality::{Expert, Modality};
-use crate::session::snapshot::{Badge, ExpertView, LatentView, Snapshot};
+use crate::session::snapshot::{Badge, ExpertView, Snapshot};
 
 /// Columns of the table without the readings, at least.
 const BASE: u16 = 44;
@@ -117,7 +117,7 @@ fn line(
         right(buf, pane, SIGMA_END, row, &damage, warning);
     } else {
         let numbers = view.latent.as_ref().map_or([f32::NAN; 2], |latent| {
-            [norm(&latent.mean), mean_sigma(latent)]
+            [norm(&latent.mean), latent.mean_sigma()]
         });
         right(buf, pane, MEAN_END, row, &short(numbers[0]), plain);
         right(buf, pane, SIGMA_END, row, &short(numbers[1]), plain);
@@ -175,10 +175,6 @@ fn percent(share: f32) -> String {
 
 fn norm(mean: &[f32]) -> f32 {
     mean.iter().map(|mean| mean * mean).sum::<f32>().sqrt()
-}
-
-fn mean_sigma(latent: &LatentView) -> f32 {
-    latent.sigma.iter().sum::<f32>() / latent.sigma.len().max(1) as f32
 }
 
 #[cfg(test)]

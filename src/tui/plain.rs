@@ -20,7 +20,7 @@ use std::fmt::{Display, Write};
 use crate::session::command::Scope;
 use crate::session::model_key;
 use crate::session::snapshot::{
-    Badge, Estimate, ExpertView, LatentView, PositionView, Snapshot, StepPsnr,
+    Badge, Estimate, ExpertView, LatentView, PositionView, Snapshot, StepPsnr, estimate_at,
 };
 
 /// Writes the report.
@@ -202,7 +202,7 @@ fn position(report: &mut Report, position: Option<&PositionView>, cursor: usize)
             position.prediction_error_m,
         ),
     ] {
-        let estimate: Option<Estimate> = estimates.get(cursor).copied().flatten();
+        let estimate: Option<Estimate> = estimate_at(estimates, cursor);
         let label = format!("position {name}");
         report.place(&label, estimate.map(|it| [it.x, it.y]));
         let sigma = estimate.map(|it| [it.covariance[0].sqrt(), it.covariance[2].sqrt()]);

@@ -27,7 +27,7 @@ use super::theme::{PREDICTION, dim, strong};
 use super::view::{Pane, View};
 use super::words;
 use crate::measure::ellipse::{ONE_SIGMA_MASS, SIGMAS_OF_95_PERCENT};
-use crate::session::snapshot::{Estimate, PositionView, Snapshot};
+use crate::session::snapshot::{Estimate, PositionView, Snapshot, estimate_at};
 
 /// Draws the plane with its legend; in the view of its own the large one.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -122,10 +122,6 @@ fn dots(view: &Plane, estimates: &[Option<Estimate>]) -> Vec<(f32, f32)> {
         .collect()
 }
 
-fn at_step(estimates: &[Option<Estimate>], step: usize) -> Option<Estimate> {
-    estimates.get(step).copied().flatten()
-}
-
 /// Truth dashed, prediction dotted, belief whole.
 fn paths(canvas: &mut Canvas, view: &Plane, position: &PositionView, face: &Face) {
     let truth = position.truth.iter().map(|pose| view.dot([pose.x, pose.y]));
@@ -144,11 +140,11 @@ fn ellipses(
     face: &Face,
 ) {
     // A prediction states the spread of its last step only, which no mass can be claimed for.
-    if let Some(estimate) = at_step(&position.prediction, cursor) {
+    if let Some(estimate) = estimate_at(&position.prediction, cursor) {
         let ink = face.depth.ink(PREDICTION);
         canvas.path(&view.ellipse(&estimate, 1.0), Stroke::Solid, ink);
     }
-    if let Some(estimate) = at_step(&position.belief, cursor) {
+    if let Some(estimate) = estimate_at(&position.belief, cursor) {
         let outline = view.ellipse(&estimate, SIGMAS_OF_95_PERCENT);
         canvas.path(&outline, Stroke::Dashed, Style::new());
         canvas.path(&view.ellipse(&estimate, 1.0), Stroke::Solid, Style::new());
@@ -175,11 +171,11 @@ fn marks(
     if let Some(pose) = position.truth.get(cursor) {
         mark([pose.x, pose.y], '×', strong());
     }
-    if let Some(estimate) = at_step(&position.prediction, cursor) {
+    if let Some(estimate) = estimate_at(&position.prediction, cursor) {
         let ink = strong().patch(face.depth.ink(PREDICTION));
         mark([estimate.x, estimate.y], '◆', ink);
     }
-    if let Some(estimate) = at_step(&position.belief, cursor) {
+    if let Some(estimate) = estimate_at(&position.belief, cursor) {
         mark([estimate.x, estimate.y], '●', strong());
     }
 }
@@ -188,7 +184,7 @@ fn marks(
 fn marked(view: &Plane, position: &PositionView, cursor: usize) -> Vec<(u16, u16)> {
     let truth = position.truth.get(cursor).map(|pose| [pose.x, pose.y]);
     let estimates = [&position.prediction, &position.belief].map(|path| {
-        let now = at_step(path, cursor)?;
+        let now = estimate_at(path, cursor)?;
         Some([now.x, now.y])
     });
     let points = [truth].into_iter().chain(estimates).flatten();

@@ -4,7 +4,12 @@ use crate::measure::corruption::{Corruption, Damage};
 use crate::modality::{Expert, Modality};
 use crate::session::switches::Reach;
 
-use super::{ModelInfo, Snapshot};
+use super::{Estimate, ModelInfo, Snapshot};
+
+/// The estimate of a step, where there is one.
+pub fn estimate_at(estimates: &[Option<Estimate>], step: usize) -> Option<Estimate> {
+    estimates.get(step).copied().flatten()
+}
 
 /// Severity of a damage that says nothing else.
 const HALF: f32 = 0.5;

@@ -54,6 +54,13 @@ pub struct ExpertReading {
     pub pull_m: Option<[f32; 2]>,
 }
 
+impl ExpertReading {
+    /// How far the belief's position moves without it, in metres.
+    pub fn shift_m(&self, belief: Estimate) -> Option<f32> {
+        Some(self.without?.distance_m([belief.x, belief.y]))
+    }
+}
+
 /// The readings over the episode, one value a step; NaN before the first belief and where there is none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct SeriesView {

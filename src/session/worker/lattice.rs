@@ -136,7 +136,9 @@ impl Lattice {
                     .map(|error| error as f32),
                 psnr_db: compared.and_then(|(frame, truth)| psnr_db(frame, truth)),
                 frame,
-                position_error_m: position.zip(truth).map(|(at, truth)| at.distance_m(*truth)),
+                position_error_m: position
+                    .zip(truth)
+                    .map(|(at, truth)| at.distance_m([truth.x, truth.y])),
                 position,
                 episode_rmse_m: set.rmse_m,
                 ellipse_m2: ellipse.map(|e| std::f32::consts::PI * e.major * e.minor),

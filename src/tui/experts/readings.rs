@@ -6,8 +6,8 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use crate::measure::chi2::Bounds;
-use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::reading::ExpertReading;
+use crate::session::snapshot::{Snapshot, estimate_at};
 use crate::tui::face::Face;
 use crate::tui::fuse::{mark, range};
 use crate::tui::paint::{put, right, short, text, width};
@@ -50,10 +50,8 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         right(buf, pane, end, 0, name, dim());
     }
     let fusion = snapshot.fusion.as_deref();
-    let belief = snapshot.position.as_ref().and_then(|position| {
-        let estimate = (*position.belief.get(snapshot.cursor)?)?;
-        Some([estimate.x, estimate.y])
-    });
+    let position = snapshot.position.as_ref();
+    let belief = position.and_then(|position| estimate_at(&position.belief, snapshot.cursor));
     for (i, view) in snapshot.experts.iter().enumerate() {
         let row = 1 + i as u16;
         let none = ExpertReading::default();
@@ -80,11 +78,9 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
                 }
             }
         }
-        let moved = belief.zip(reading.without).map(|([x, y], without)| {
-            // Metres on the table to centimetres.
-            (without.x - x).hypot(without.y - y) * 100.0
-        });
-        let others = [reading.information_nats, reading.mahalanobis, moved];
+        let shift = belief.and_then(|belief| reading.shift_m(belief));
+        let shift_cm = shift.map(|metres| metres * 100.0);
+        let others = [reading.information_nats, reading.mahalanobis, shift_cm];
         for ((end, _), value) in columns.into_iter().skip(2).zip(others) {
             right(buf, pane, end, row, &number(value), plain);
         }

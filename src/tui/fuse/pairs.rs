@@ -15,7 +15,7 @@ use ratatui::style::Style;
 
 use super::{empty, mark, range};
 use crate::measure::innovation::{Conflict, Disagreement};
-use crate::session::snapshot::{Badge, Snapshot};
+use crate::session::snapshot::{Badge, LatentView, Snapshot};
 use crate::tui::face::Face;
 use crate::tui::layout::rows;
 use crate::tui::paint::{below_title, put, right, short, text, title, width};
@@ -139,9 +139,8 @@ fn conflict(buf: &mut Buffer, pane: Rect, reading: Conflict, snapshot: &Snapshot
     let roomy = pane.height > 3;
     let row = sentence(buf, pane, 1, words(reading, roomy), Style::new());
     // The belief is sharpest just when it is wrong, so its σ stands beside Q.
-    let sigma = snapshot.belief.as_ref().map_or(f32::NAN, |belief| {
-        belief.sigma.iter().sum::<f32>() / belief.sigma.len().max(1) as f32
-    });
+    let belief = snapshot.belief.as_ref();
+    let sigma = belief.map_or(f32::NAN, LatentView::mean_sigma);
     if roomy {
         let more = format!("σ of the belief {}", short(sigma));
         text(buf, pane, 0, row, &more, dim());

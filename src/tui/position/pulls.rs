@@ -21,8 +21,7 @@ use super::super::predict::edited;
 use super::super::theme::{dim, strong};
 use super::super::view::Pane;
 use super::super::words::sentence;
-use super::at_step;
-use crate::session::snapshot::{Badge, Snapshot};
+use crate::session::snapshot::{Badge, Snapshot, estimate_at};
 
 /// Where each column ends.
 const X: u16 = 18;
@@ -62,7 +61,7 @@ fn table(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) -> u16 
     let belief = snapshot
         .position
         .as_ref()
-        .and_then(|position| at_step(&position.belief, snapshot.cursor));
+        .and_then(|position| estimate_at(&position.belief, snapshot.cursor));
     let mut row = 1;
     for (view, reading) in std::iter::zip(&snapshot.experts, &fusion.experts) {
         let expert = view.expert;
@@ -75,10 +74,7 @@ fn table(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) -> u16 
         text(buf, pane, 0, row, &expert.letter().to_string(), ink);
         text(buf, pane, 2, row, expert.name(), plain);
         pair(buf, pane, row, reading.pull_m, plain);
-        let shift = belief.and_then(|belief| {
-            let without = reading.without?;
-            Some((without.x - belief.x).hypot(without.y - belief.y))
-        });
+        let shift = belief.and_then(|belief| reading.shift_m(belief));
         right(buf, pane, WITHOUT, row, &cm(shift), plain);
         row += 1;
     }

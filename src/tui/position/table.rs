@@ -22,11 +22,11 @@ use super::super::theme::{PREDICTION, SECOND, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{self, Entry, legend, legend_rows};
 use super::arrows::{Arrows, ghosts};
-use super::{at_step, dots, ellipses, marked, marks, masses, off, paths, window};
+use super::{dots, ellipses, marked, marks, masses, off, paths, window};
 use crate::measure::ellipse::SIGMAS_OF_95_PERCENT;
 use crate::modality::Expert;
 use crate::session::model_key;
-use crate::session::snapshot::{PositionView, Snapshot};
+use crate::session::snapshot::{PositionView, Snapshot, estimate_at};
 
 /// Draws the plane with its legend.
 pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
@@ -87,7 +87,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     if let Some(other) = other {
         other_marks(buf, plane, &view, other, snapshot.cursor, face);
     }
-    if let Some(now) = at_step(&position.recorded_controls, snapshot.cursor)
+    if let Some(now) = estimate_at(&position.recorded_controls, snapshot.cursor)
         && let Some((column, row)) = view.cell(view.dot([now.x, now.y]))
     {
         put(buf, plane, column, row, 'r', strong());
@@ -103,7 +103,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         arrows.draw(buf, (plane, &marked), &view, face);
     }
 
-    let cut = at_step(&position.belief, snapshot.cursor)
+    let cut = estimate_at(&position.belief, snapshot.cursor)
         .is_some_and(|now| view.cuts(&view.ellipse(&now, SIGMAS_OF_95_PERCENT)));
     let said = Said {
         arrows: arrows.as_ref().map(|arrows| arrows.factor),
@@ -128,7 +128,7 @@ fn other_marks(
 ) {
     let ink = strong().patch(face.depth.ink(SECOND));
     for (path, symbol) in [(&other.prediction, '◇'), (&other.belief, '○')] {
-        if let Some(now) = at_step(path, cursor)
+        if let Some(now) = estimate_at(path, cursor)
             && let Some((column, row)) = view.cell(view.dot([now.x, now.y]))
         {
             put(buf, pane, column, row, symbol, ink);

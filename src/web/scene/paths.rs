@@ -2,9 +2,9 @@
 
 use super::names::PATH_POINTS;
 use super::nodes::{Nodes, Point};
-use super::table::{ABOVE, BELIEF, PREDICTION, above, at_step};
+use super::table::{ABOVE, BELIEF, PREDICTION, above};
 use crate::measure::ellipse::{Ellipse, SIGMAS_OF_95_PERCENT};
-use crate::session::snapshot::{Estimate, PositionView, Snapshot};
+use crate::session::snapshot::{Estimate, PositionView, Snapshot, estimate_at};
 use crate::web::protocol::array::Array;
 use crate::web::protocol::batched::BatchedProps;
 use crate::web::protocol::node::{Binding, Clicks};
@@ -60,7 +60,7 @@ pub fn add(nodes: &mut Nodes, snapshot: &Snapshot) {
     );
     steps(nodes, &truth);
 
-    let now = at_step(&position.belief, snapshot.cursor);
+    let now = estimate_at(&position.belief, snapshot.cursor);
     let outline = |sigmas| now.map(|now| outline(&now, sigmas)).unwrap_or_default();
     nodes.lines("/ellipse/sigma", &broken(&outline(1.0), 1.0), BELIEF, 2.0);
     nodes.lines(

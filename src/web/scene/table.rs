@@ -2,7 +2,7 @@
 
 use super::nodes::{Nodes, Point};
 use crate::episode::{PLATE_M as PLATE, TIP_HEIGHT_M as TIP_HEIGHT};
-use crate::session::snapshot::{Estimate, PositionView, Snapshot};
+use crate::session::snapshot::{Estimate, PositionView, Snapshot, estimate_at};
 use crate::web::protocol::camera::{CameraLookAt, CameraPosition};
 use crate::web::protocol::grid::GridProps;
 use crate::web::protocol::pose::Visibility;
@@ -101,7 +101,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
     );
 
     // Only its place is predicted; it is turned as the recorded one.
-    let predicted = position.and_then(|position| at_step(&position.prediction, cursor));
+    let predicted = position.and_then(|position| estimate_at(&position.prediction, cursor));
     let yaw = pose.map_or(0.0, |pose| pose.yaw);
     let ghost = Look {
         opacity: Some(0.45),
@@ -111,7 +111,7 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
     let at = predicted.map(|estimate| ([estimate.x, estimate.y, middle + 0.001], yaw));
     nodes.put("/predicted", plate(PREDICTION, ghost), at);
 
-    let believed = position.and_then(|position| at_step(&position.belief, cursor));
+    let believed = position.and_then(|position| estimate_at(&position.belief, cursor));
     let props = BallProps {
         radius: 0.005,
         subdivisions: 2,
@@ -120,11 +120,6 @@ fn things(nodes: &mut Nodes, snapshot: &Snapshot, flat: Look) {
         scale: 1.0,
     };
     nodes.put("/believed", props, believed.map(|it| (above(&it), 0.0)));
-}
-
-/// The estimate at a step.
-pub fn at_step(estimates: &[Option<Estimate>], step: usize) -> Option<Estimate> {
-    estimates.get(step).copied().flatten()
 }
 
 /// Where an estimate is drawn.

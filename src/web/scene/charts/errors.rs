@@ -55,7 +55,7 @@ pub fn distances_cm<'a>(
     estimates.iter().enumerate().map(|(step, estimate)| {
         let both = estimate.zip(position.truth.get(step));
         both.map_or(f64::NAN, |(estimate, truth)| {
-            100.0 * f64::from(estimate.distance_m(*truth))
+            100.0 * f64::from(estimate.distance_m([truth.x, truth.y]))
         })
     })
 }
