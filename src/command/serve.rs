@@ -53,6 +53,8 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     }
     if let Some(state) = args.state {
         session.apply(Command::Restore(state));
+    } else {
+        session.apply(Command::FirstPredicted);
     }
     let options = Options {
         address,

@@ -31,7 +31,9 @@ pub fn add(panel: &mut Panel, snapshot: &Snapshot) {
     panel.chart("chart-psnr", errors::psnr(snapshot));
 }
 
-/// A chart that is being put together.
+/// A chart that is being put together. Which series it has depends on the model, not on what there is at a step:
+/// viser's client makes a chart anew for other series, from the old data, and tells it the new ones before it has drawn;
+/// where the first of those is a gap, uPlot then fails for want of an axis' range. It would lose the user's zoom, too.
 struct Chart {
     columns: Vec<Vec<f64>>,
     series: Vec<Series>,
@@ -39,14 +41,18 @@ struct Chart {
 }
 
 impl Chart {
-    /// Over these values of x.
+    /// Over these values of x; over 1 where there are none, since viser's client counts with the ends of x.
     fn over(label: &str, x: impl IntoIterator<Item = f64>) -> Self {
+        let mut x: Vec<f64> = x.into_iter().collect();
+        if x.is_empty() {
+            x.push(1.0);
+        }
         let series = Series {
             label: Some(label.to_owned()),
             ..Series::default()
         };
         Self {
-            columns: vec![x.into_iter().collect()],
+            columns: vec![x],
             series: vec![series],
             bands: Vec::new(),
         }
@@ -75,10 +81,10 @@ impl Chart {
         });
     }
 
-    /// Marks the cursor by a point at a height.
+    /// Marks the cursor by a point at a height, if there is one.
     fn mark(&mut self, cursor: usize, height: f64) {
         let length = self.columns[0].len();
-        if cursor < length && length <= MARKED && height.is_finite() {
+        if length <= MARKED {
             let points = Points {
                 show: true,
                 size: 9.0,
@@ -159,4 +165,17 @@ fn ink(expert: Expert) -> String {
 fn dashes(place: usize) -> &'static [u32] {
     const KINDS: [&[u32]; 5] = [&[], &[8, 3], &[2, 3], &[8, 3, 2, 3], &[4, 4]];
     KINDS[place % KINDS.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chart_of_nothing_has_an_x_all_the_same() {
+        let mut chart = Chart::over("latent dimension", []);
+        chart.add(line("belief μ", BELIEF, &[]), []);
+        assert!(chart.columns.iter().all(|column| column.len() == 1));
+        assert!(!chart.done("belief", "mean", None).visible);
+    }
 }

@@ -107,6 +107,9 @@ fn a_step_sends_what_changed_and_a_switch_what_it_changes() {
     ] {
         assert!(!updated(&step, uuid), "{uuid}");
     }
+    // For other series viser's client would make a chart anew.
+    let other = |message: &&Value| !message["updates"]["series"].is_null();
+    assert_eq!(step.iter().find(other), None);
     assert!(
         step.iter()
             .any(|message| message["type"] == "SetPositionMessage" && message["name"] == "/plate")
@@ -120,6 +123,7 @@ fn a_step_sends_what_changed_and_a_switch_what_it_changes() {
         .unwrap();
     assert_eq!(vision["updates"]["value"], Value::Bool(false));
     assert!(updated(&switch, "poescope-frame-belief") && updated(&switch, "poescope-chart-shares"));
+    assert_eq!(switch.iter().find(other), None);
     assert!(!updated(&switch, "poescope-frame-truth"));
 }
 

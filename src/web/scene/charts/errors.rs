@@ -6,28 +6,28 @@ use crate::web::protocol::uplot::{Series, UplotProps};
 
 pub fn position(snapshot: &Snapshot) -> UplotProps {
     let mut chart = Chart::over_steps(snapshot.steps());
-    if let Some(position) = &snapshot.position {
-        let (belief, prediction) = (&position.belief, &position.prediction);
-        let claims = belief
-            .iter()
-            .map(|estimate| estimate.map_or(f64::NAN, |it| claim_cm(it.covariance)));
-        let fill = Some("rgba(122,122,122,0.25)".to_owned());
-        chart.add(
-            Series {
-                fill,
-                ..line("claimed σ", "transparent", &[])
-            },
-            claims,
-        );
-        let errors: Vec<f64> = distances_cm(belief, position).collect();
-        let now = errors.get(snapshot.cursor).copied().unwrap_or(f64::NAN);
-        chart.add(line("belief", BELIEF, &[]), errors);
-        chart.add(
-            line("prediction", PREDICTION, &[2, 3]),
-            distances_cm(prediction, position),
-        );
-        chart.mark(snapshot.cursor, now);
-    }
+    let position = snapshot.position.as_ref();
+    let claims = position
+        .into_iter()
+        .flat_map(|position| position.belief.iter());
+    let claims = claims.map(|estimate| estimate.map_or(f64::NAN, |it| claim_cm(it.covariance)));
+    let fill = Some("rgba(122,122,122,0.25)".to_owned());
+    let claimed = Series {
+        fill,
+        ..line("claimed σ", "transparent", &[])
+    };
+    chart.add(claimed, claims);
+    let belief = position
+        .into_iter()
+        .flat_map(|position| distances_cm(&position.belief, position));
+    let belief: Vec<f64> = belief.collect();
+    let now = belief.get(snapshot.cursor).copied().unwrap_or(f64::NAN);
+    chart.add(line("belief", BELIEF, &[]), belief);
+    let prediction = position
+        .into_iter()
+        .flat_map(|position| distances_cm(&position.prediction, position));
+    chart.add(line("prediction", PREDICTION, &[2, 3]), prediction);
+    chart.mark(snapshot.cursor, now);
     chart.done("position error", "cm", Some([Some(0.0), None]))
 }
 

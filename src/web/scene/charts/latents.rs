@@ -1,35 +1,22 @@
 //! The belief at the cursor, dimension by dimension, with the experts that it is made of.
 
 use super::{BELIEF, Chart, ink, line};
-use crate::session::snapshot::Snapshot;
+use crate::session::snapshot::{LatentView, Snapshot};
 use crate::web::protocol::uplot::{Points, Series, UplotProps};
 
 pub fn chart(snapshot: &Snapshot) -> UplotProps {
-    let latent = snapshot.belief.as_ref();
-    let dimensions = latent.map_or(0, |latent| latent.mean.len());
+    let dimensions = snapshot.shown_model().map_or(0, |model| model.latent);
     let mut chart = Chart::over("latent dimension", (1..=dimensions).map(|d| d as f64));
-    if let Some(belief) = latent {
-        let end = |sign: f64| {
-            std::iter::zip(&belief.mean, &belief.sigma)
-                .map(move |(&mean, &sigma)| f64::from(mean) + sign * f64::from(sigma))
-        };
-        let mean = belief.mean.iter().map(|&mean| f64::from(mean));
-        chart.add(
-            Series {
-                width: Some(2.0),
-                ..line("belief μ", BELIEF, &[])
-            },
-            mean,
-        );
-        let upper = chart.add(line("μ + σ", "transparent", &[]), end(1.0));
-        let lower = chart.add(line("μ − σ", "transparent", &[]), end(-1.0));
-        chart.band(upper, lower, "rgba(122,122,122,0.3)");
-    }
+    let belief = snapshot.belief.as_ref();
+    let mean = Series {
+        width: Some(2.0),
+        ..line("belief μ", BELIEF, &[])
+    };
+    chart.add(mean, means(belief));
+    let upper = chart.add(line("μ + σ", "transparent", &[]), ends(belief, 1.0));
+    let lower = chart.add(line("μ − σ", "transparent", &[]), ends(belief, -1.0));
+    chart.band(upper, lower, "rgba(122,122,122,0.3)");
     for view in &snapshot.experts {
-        // One that is off has no part in the belief.
-        let Some(latent) = view.latent.as_ref().filter(|_| view.alpha > 0.0) else {
-            continue;
-        };
         let color = ink(view.expert);
         let label = format!("{} μ", view.expert.letter());
         let series = Series {
@@ -41,7 +28,23 @@ pub fn chart(snapshot: &Snapshot) -> UplotProps {
             }),
             ..line(&label, &color, &[])
         };
-        chart.add(series, latent.mean.iter().map(|&mean| f64::from(mean)));
+        // One that is off has no part in the belief.
+        let latent = view.latent.as_ref().filter(|_| view.alpha > 0.0);
+        chart.add(series, means(latent));
     }
     chart.done("belief at this step", "mean, band ± σ", None)
+}
+
+/// Its means; nothing where there is none.
+fn means(latent: Option<&LatentView>) -> impl Iterator<Item = f64> {
+    let means = latent.into_iter().flat_map(|latent| &latent.mean);
+    means.map(|&mean| f64::from(mean))
+}
+
+/// So many deviations from its means.
+fn ends(latent: Option<&LatentView>, deviations: f64) -> impl Iterator<Item = f64> {
+    let each = latent
+        .into_iter()
+        .flat_map(|latent| std::iter::zip(&latent.mean, &latent.sigma));
+    each.map(move |(&mean, &sigma)| f64::from(mean) + deviations * f64::from(sigma))
 }
