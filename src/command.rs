@@ -31,7 +31,7 @@ fn progress_bar(len: usize, template: &str) -> ProgressBar {
 /// Runs what the command line asks for.
 pub fn dispatch(cli: Cli) -> anyhow::Result<()> {
     match cli.command.unwrap_or(Command::View(cli.view)) {
-        Command::View(args) => view::run(args),
+        Command::View(args) => view::run(&args),
         Command::Serve(args) => serve::run(args),
         Command::Info(args) => info::run(&args),
         Command::Simulate(args) => simulate::run(&args),

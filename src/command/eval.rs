@@ -8,30 +8,24 @@ mod kept;
 mod ledger;
 mod names;
 mod scores;
+mod scoring;
 mod settings;
 
-use std::sync::atomic::Ordering;
-
 use anyhow::{Context, bail};
-use rayon::prelude::*;
 
 use self::entrants::Entrant;
 use self::fit::Fit;
 use self::ground::Ground;
 use self::ledger::{Joined, Ledger, Place};
-use self::scores::Outcome;
-use super::{note, progress_bar, sample, say};
+use self::scoring::Scoring;
+use super::{note, sample, say};
 use crate::cli::{EvalArgs, EvalPreset};
-use crate::episode::EpisodeSource;
 use crate::eval::protocol::Protocol;
 use crate::eval::score::Contest;
 use crate::eval::summary::summarise;
 use crate::eval::{markdown, tables};
 use crate::export::table::{write_csv, write_parquet};
 use crate::model::checkpoint::write_atomic;
-
-/// Episodes between two looks at whether to stop, and between two writes.
-const CHUNK: usize = 16;
 
 /// Runs it.
 pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
@@ -57,27 +51,7 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
     let (i, n) = args.shard.unwrap_or((1, 1));
     let own = ground.episodes.iter().copied().skip(i - 1).step_by(n);
     let own: Vec<usize> = own.collect();
-    for (candidate, entrant) in entrants.iter().enumerate() {
-        let missing = own.iter().filter(|index| ledger.lacks(candidate, **index));
-        let missing = missing.count();
-        if entrant.scorer().is_none() && missing > 0 {
-            bail!(
-                "{} lacks {missing} of {} episodes; name the checkpoint folder instead, or finish its run",
-                entrant.path.display(),
-                own.len()
-            );
-        }
-    }
-    let lacking = |index: &usize| !ledger.lacking(*index).is_empty();
-    let left: Vec<usize> = own.iter().copied().filter(lacking).collect();
-    if let (true, Some(dataset), Some(&first)) = (args.merge, ground.dataset(), left.first()) {
-        bail!(
-            "{} of {} episodes are not scored yet, `{}` among them; run their shards, or leave out --merge",
-            left.len(),
-            own.len(),
-            dataset.metas()[first].id
-        );
-    }
+    let left = scoring::left(args, &ground, &entrants, &ledger, &own)?;
     // A shard keeps scores alone, which no regressor has a part in.
     if let (Some(data), None) = (&args.fit, args.shard) {
         let fit = Fit {
@@ -89,35 +63,15 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
         };
         fit.each(&mut contest.candidates, &entrants)?;
     }
-    let bar = progress_bar(
-        own.len(),
-        "scoring {bar:30} {pos}/{len} episodes, {eta} left",
-    );
-    bar.inc((own.len() - left.len()) as u64);
-    let mut left_out: Vec<String> = Vec::new();
-    for chunk in left.chunks(CHUNK) {
-        if stop.load(Ordering::Relaxed) {
-            bar.finish_and_clear();
-            bail!(match out {
-                Some(_) => "stopped; go on with the same command",
-                None => "stopped",
-            });
-        }
-        let each = chunk.par_iter().map(|&index| {
-            let lacking = ledger.lacking(index);
-            let outcomes = ground.score(&contest, &entrants, &lacking, index)?;
-            Ok((index, lacking, outcomes))
-        });
-        for (index, lacking, outcomes) in each.collect::<anyhow::Result<Vec<_>>>()? {
-            let mut why = outcomes.iter().filter_map(Outcome::left_out);
-            left_out.extend(why.next().map(str::to_owned));
-            for (candidate, outcome) in lacking.into_iter().zip(outcomes) {
-                ledger.push(candidate, index, outcome)?;
-            }
-        }
-        bar.inc(chunk.len() as u64);
-    }
-    bar.finish_and_clear();
+    let scoring = Scoring {
+        contest: &contest,
+        ground: &ground,
+        entrants: &entrants,
+        of: own.len(),
+        kept: out.is_some(),
+        stop: &stop,
+    };
+    let left_out = scoring.run(&left, &mut ledger)?;
     // Where nothing is left to sum up, that is the error, and why.
     if args.shard.is_some() || left_out.len() < own.len() {
         for why in &left_out {

@@ -33,9 +33,9 @@ use crate::tui::theme::Depth;
 const PATIENCE: Duration = Duration::from_mins(2);
 
 /// Opens and shows.
-pub fn run(args: ViewArgs) -> anyhow::Result<()> {
+pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let keys = parse_script(args.keys.as_deref().unwrap_or_default()).context("--keys")?;
-    let report = Report::asked(&args);
+    let report = Report::asked(args);
     let in_terminal = report.is_none() && io::stdout().is_terminal();
     if !in_terminal && report.is_none() {
         super::note(
@@ -61,67 +61,87 @@ pub fn run(args: ViewArgs) -> anyhow::Result<()> {
         session,
         watched,
         opened,
-    } = open(&args)?;
+    } = open(args)?;
     let mut app = App::new(session, face, Size::new(size.0, size.1));
     if let Some(cache) = cache::Folder::of_user() {
         app.session.keep_scores_in(Arc::new(cache));
     }
-    let has_state = args.state.is_some();
-    if let Some(state) = args.state {
-        app.session.apply(Command::Restore(state));
-        if args.serve.is_some() {
-            // It is answered once its episode is there, and then it must not take the place of the address.
-            wait(&mut app)?;
-        }
-        if !in_terminal {
-            // What is asked of another episode or model than there is must not be answered for this one.
-            wait(&mut app)?;
-            if let Some(Message { error: true, text }) = app.session.snapshot().message {
-                bail!("--state: {text}");
-            }
-        }
-    }
-    if !has_state && args.keys.is_none() {
-        app.session.apply(Command::FirstPredicted);
-    }
-    if send(&mut app, &keys)? == Flow::Quit {
+    if arrive(&mut app, args, &keys, in_terminal)? == Flow::Quit {
         return Ok(());
-    }
-    if let Some(order) = args.rank {
-        // What a state string says of it comes with its episode.
-        wait(&mut app)?;
-        app.session.apply(Command::RankBy(order));
     }
     if report == Some(Report::Failures) {
         wait(&mut app)?;
         app.session.apply(Command::Failure(1));
     }
-    if !in_terminal {
+    if in_terminal {
+        stay(app, args, &opened, watched)
+    } else {
         wait(&mut app)?;
-        let snapshot = app.session.snapshot();
-        if report == Some(Report::Failures) && snapshot.table.queue.is_empty() {
-            bail!(
-                "--failures: {}",
-                snapshot
-                    .message
-                    .map_or("nothing could be scored".to_owned(), |m| m.text)
-            );
-        }
-        let report = report.unwrap_or(Report::Frame);
-        return say(&report.of(&app.session, &app.face, size)?);
+        tell(&app, report.unwrap_or(Report::Frame), size)
     }
+}
+
+/// Goes where the arguments say: to a state, or to the first predicted step; then by keys, and into an order of episodes.
+fn arrive(app: &mut App, args: &ViewArgs, keys: &[Key], in_terminal: bool) -> anyhow::Result<Flow> {
+    if let Some(state) = &args.state {
+        app.session.apply(Command::Restore(state.clone()));
+        // In the terminal it goes on while its episode is read, but for the address of --serve, whose place it must not
+        // take once it is answered. What is asked of another episode or model than there is must not be answered for
+        // this one.
+        if !in_terminal || args.serve.is_some() {
+            wait(app)?;
+        }
+        if !in_terminal && let Some(Message { error: true, text }) = app.session.snapshot().message
+        {
+            bail!("--state: {text}");
+        }
+    } else if args.keys.is_none() {
+        app.session.apply(Command::FirstPredicted);
+    }
+    if send(app, keys)? == Flow::Quit {
+        return Ok(Flow::Quit);
+    }
+    if let Some(order) = args.rank {
+        // What a state string says of it comes with its episode.
+        wait(app)?;
+        app.session.apply(Command::RankBy(order));
+    }
+    Ok(Flow::Go)
+}
+
+/// Says what is shown, once.
+fn tell(app: &App, report: Report, size: (u16, u16)) -> anyhow::Result<()> {
+    let snapshot = app.session.snapshot();
+    if report == Report::Failures && snapshot.table.queue.is_empty() {
+        bail!(
+            "--failures: {}",
+            snapshot
+                .message
+                .map_or("nothing could be scored".to_owned(), |m| m.text)
+        );
+    }
+    say(&report.of(&app.session, &app.face, size)?)
+}
+
+/// Shows it in the terminal until the user quits, and to browsers and viewers that were asked for.
+fn stay(
+    mut app: App,
+    args: &ViewArgs,
+    opened: &Opened,
+    watched: Vec<Watched>,
+) -> anyhow::Result<()> {
     app.session.survey();
     let server = args
         .serve
         .map(|address| serve::attach(&mut app.session, address, args.read_only));
     let server = server.transpose()?;
-    let _stream = stream(&mut app.session, &opened, args.rerun.as_deref())?;
+    let _stream = stream(&mut app.session, opened, args.rerun.as_deref())?;
     if let Some(server) = &server {
         announce(&mut app.session, &server.url(), args.rerun.as_deref());
         app.face.address = Some(server.url());
     }
     let folder = std::env::current_dir().unwrap_or_default();
-    app.take_along = Some(take_along::taker(&mut app.session, &opened, folder));
+    app.take_along = Some(take_along::taker(&mut app.session, opened, folder));
     let follower = Follower::start(watched, follow::PERIOD, app.session.renewal());
     let _follower = follower.context("starting a thread to watch the models")?;
     match terminal::run(&mut app, images(args.images)).context("the terminal")? {
@@ -278,7 +298,7 @@ mod tests {
             print: true,
             ..ViewArgs::default()
         };
-        let told = format!("{:#}", run(args).unwrap_err());
+        let told = format!("{:#}", run(&args).unwrap_err());
         assert!(
             told.starts_with("--keys: no key is named <nokey>"),
             "{told}"
