@@ -194,7 +194,15 @@ fn drive(
         if fraction >= 1.0 || run.stop.load(Ordering::Relaxed) {
             if saved.is_some() && !state.update.is_multiple_of(epoch_updates) {
                 // Nobody has seen yet what the last update has made of the weights.
-                looked_at(model, state, run, Vec::new())?;
+                let val = looked_at(model, state, run, Vec::new())?;
+                if fraction >= 1.0 {
+                    // The epoch that the budget has cut short.
+                    let last = state.update.saturating_sub(1);
+                    let at = budget.fraction(last, epoch_updates, state.elapsed);
+                    let rate = Phase::of(training, last, epoch_updates, at).rate;
+                    let line = metrics::Line::of(state, epoch_updates, rate, meter.take(), val);
+                    metrics::log(run.folder, &mut events, &line)?;
+                }
             }
             state.save(model, run.folder)?;
             return Ok(if fraction >= 1.0 {
@@ -260,15 +268,8 @@ fn drive(
         };
         state.elapsed += started.elapsed();
         if epoch_ended {
-            let line = metrics::Line {
-                update: state.update,
-                epoch: state.update / epoch_updates,
-                elapsed_secs: state.elapsed.as_secs_f64(),
-                learning_rate: phase.rate,
-                train: losses,
-                meter: meter.take(),
-                val: validation.clone(),
-            };
+            let val = validation.clone();
+            let line = metrics::Line::of(state, epoch_updates, phase.rate, meter.take(), val);
             metrics::log(run.folder, &mut events, &line)?;
         }
         report(&Progress {

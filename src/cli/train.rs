@@ -27,8 +27,8 @@ pub struct TrainArgs {
     /// Run folder: checkpoints, metrics, report
     #[arg(long)]
     pub out: PathBuf,
-    /// A config.toml to train instead of the model's own settings
-    #[arg(long)]
+    /// A config.toml to train instead of a model's preset
+    #[arg(long, conflicts_with = "preset")]
     pub config: Option<PathBuf>,
     /// Epochs over the training split [default: the preset's, or none with --minutes or --updates]
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]

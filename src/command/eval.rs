@@ -61,7 +61,8 @@ pub fn run(args: &EvalArgs) -> anyhow::Result<()> {
             never: ground.origins(),
             stop: &stop,
         };
-        fit.each(&mut contest.candidates, &entrants)?;
+        let refit = fit.each(&mut contest.candidates, &entrants)?;
+        ground.scope.refit = Some(refit);
     }
     let scoring = Scoring {
         contest: &contest,

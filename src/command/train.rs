@@ -70,9 +70,14 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
     )?;
     if sets.train().len() < config.training.batch {
         bail!(
-            "{}: {sets}, where a batch needs {} of split `train`; mend or record more, or lower `training.batch` (--set)",
+            "{}: {sets}, where a batch needs {} of split `train`; {}",
             args.data.display(),
-            config.training.batch
+            config.training.batch,
+            if sets.train().is_empty() {
+                "its episodes are of another split (poescope info)"
+            } else {
+                "mend or record more, or lower `training.batch` (--set)"
+            }
         );
     }
     super::note(&format!("{}: {sets}", dataset.name()));
@@ -148,6 +153,16 @@ fn command_line() -> String {
 }
 
 fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
+    let config = asked_config(args, args.model.as_deref().unwrap_or("v-h-p"))?;
+    if let Some(model) = &args.model
+        && args.config.is_some()
+        && *model != config.name
+    {
+        bail!(
+            "--model {model} is not what --config describes, which is {}; leave one of both out",
+            config.name
+        );
+    }
     if args.out.join(STATE).exists() {
         bail!(
             "{} holds a run already; add --resume to go on with it, or choose another --out",
@@ -162,7 +177,7 @@ fn fresh_config(args: &TrainArgs) -> anyhow::Result<Config> {
             args.out.display()
         );
     }
-    asked_config(args, args.model.as_deref().unwrap_or("v-h-p"))
+    Ok(config)
 }
 
 /// What --config, or --preset for `model`, and --set say together.
@@ -203,8 +218,7 @@ fn resume(args: &TrainArgs) -> anyhow::Result<(Config, Origin)> {
     let nothing = || format!("nothing to resume in {}", args.out.display());
     let config =
         checkpoint::load_config(&args.out.join(checkpoint::CONFIG)).with_context(nothing)?;
-    if let Some(model) = args.model.as_ref()
-        && args.config.is_none()
+    if let Some(model) = &args.model
         && *model != config.name
     {
         bail!(

@@ -94,9 +94,9 @@ impl Finding {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Claimed to be better.
-    pub better: String,
+    pub first: String,
     /// Than which.
-    pub worse: String,
+    pub second: String,
     /// Episodes.
     pub episodes: usize,
     /// Difference of PSNR in dB, with its 95 % bootstrap interval.
@@ -116,7 +116,7 @@ pub struct Comparison {
 impl Comparison {
     /// In words.
     pub fn sentence(&self) -> String {
-        let Self { better, worse, .. } = self;
+        let Self { first, second, .. } = self;
         let Interval { mean, low, high } = self.psnr_db;
         let of = format!("{} episodes", self.episodes);
         let seeds = self.seeds.map_or_else(String::new, |[won, all]| {
@@ -124,17 +124,17 @@ impl Comparison {
         });
         match self.finding {
             Finding::Holds => format!(
-                "`{better}` predicts better than `{worse}`, by {mean:.2} dB [{low:.2}, {high:.2}] on {of}: holds{seeds}"
+                "`{first}` predicts better than `{second}`, by {mean:.2} dB [{low:.2}, {high:.2}] on {of}: holds{seeds}"
             ),
             Finding::Reversed => format!(
-                "`{better}` predicts worse than `{worse}`, by {:.2} dB [{:.2}, {:.2}] on {of}: does not hold, it is the other way round{seeds}",
+                "`{first}` predicts worse than `{second}`, by {:.2} dB [{:.2}, {:.2}] on {of}: does not hold, it is the other way round{seeds}",
                 -mean, -high, -low
             ),
             Finding::Open => format!(
-                "`{better}` and `{worse}` cannot be told apart, {mean:+.2} dB [{low:+.2}, {high:+.2}] on {of}{seeds}"
+                "`{first}` and `{second}` cannot be told apart, {mean:+.2} dB [{low:+.2}, {high:+.2}] on {of}{seeds}"
             ),
             Finding::TooFew => format!(
-                "`{better}` less `{worse}` is {mean:+.2} dB on {of}: too few to tell, {FEW} or more are wanted{seeds}"
+                "`{first}` less `{second}` is {mean:+.2} dB on {of}: too few to tell, {FEW} or more are wanted{seeds}"
             ),
         }
     }
@@ -172,8 +172,8 @@ pub fn compare(first: &Side, second: &Side) -> Option<Comparison> {
         _ => Finding::Open,
     };
     Some(Comparison {
-        better: first.label(),
-        worse: second.label(),
+        first: first.label(),
+        second: second.label(),
         episodes,
         psnr_db,
         ssim: mean_95(&difference(|m| m.ssim), 0)?,
@@ -409,7 +409,7 @@ mod tests {
         let asked = |names: &[&str]| -> Vec<[String; 2]> {
             let sides: Vec<Side> = names.iter().map(|name| side(name, &[flat])).collect();
             let comparisons = comparisons(&sides).into_iter();
-            comparisons.map(|c| [c.better, c.worse]).collect()
+            comparisons.map(|c| [c.first, c.second]).collect()
         };
         let [held, mean] = TRIVIAL;
         let of_one = asked(&["v", "vhp", "vhp//prior off", held, mean]);

@@ -6,7 +6,7 @@ use super::protocol::Protocol;
 use super::quoted;
 use super::regression::FittedOn;
 use super::spread::Spread;
-use super::summary::{Quality, Scope, Summary};
+use super::summary::{Quality, Refit, Scope, Summary};
 use crate::measure::bootstrap::Interval;
 
 /// Every table of a summary.
@@ -44,6 +44,10 @@ fn origin(text: &mut String, summary: &Summary) {
     // By its hash alone: what a dataset is called says nothing of what it holds.
     let data = summary.scope.data_hash.clone();
     row(text, &["the dataset".to_owned(), String::new(), data]);
+    if let Some(Refit { data_hash, .. }) = &summary.scope.refit {
+        let what = "what regressors were fitted on".to_owned();
+        row(text, &[what, String::new(), data_hash.clone()]);
+    }
     let version = env!("CARGO_PKG_VERSION");
     let _ = writeln!(text, "\npoescope {version}");
 }
@@ -159,7 +163,7 @@ fn comparisons(text: &mut String, summary: &Summary) {
     );
     for c in &summary.comparisons {
         let cells = [
-            format!("{} − {}", c.better, c.worse),
+            format!("{} − {}", c.first, c.second),
             interval(c.psnr_db, 2),
             interval(c.ssim, 4),
             interval(c.squared_error, 2),
@@ -194,16 +198,21 @@ fn comparisons(text: &mut String, summary: &Summary) {
 }
 
 fn regression(text: &mut String, summary: &Summary) {
-    for (fitted_on, title) in [
-        (
-            FittedOn::Train,
-            "Pose from beliefs, fitted on the training split (± over beliefs)",
-        ),
-        (
-            FittedOn::Scored,
-            "Pose from beliefs, the released notebook's way: fitted on the very episodes that are scored (± over beliefs)",
-        ),
-    ] {
+    let train = match &summary.scope.refit {
+        Some(Refit { data, .. }) => format!("fitted anew on the training split of {data}"),
+        None if summary.protocol == Protocol::SYNTHETIC => {
+            "fitted on the training split".to_owned()
+        }
+        None => {
+            let Protocol { context, horizon } = Protocol::SYNTHETIC;
+            format!(
+                "fitted on the training split under {context} and {horizon}, as training does (--fit for anew)"
+            )
+        }
+    };
+    let scored =
+        "the released notebook's way: fitted on the very episodes that are scored".to_owned();
+    for (fitted_on, how) in [(FittedOn::Train, train), (FittedOn::Scored, scored)] {
         let rows: Vec<_> = summary
             .regression
             .iter()
@@ -221,7 +230,8 @@ fn regression(text: &mut String, summary: &Summary) {
             "y, cm",
             "yaw, °",
         ];
-        head(text, title, &columns);
+        let title = format!("Pose from beliefs, {how} (± over beliefs)");
+        head(text, &title, &columns);
         for r in rows {
             let cells = [
                 r.subject.clone(),
@@ -278,7 +288,7 @@ fn contact(text: &mut String, summary: &Summary) {
     }
     let offsets = [-2, -1, 0, 1, 2, 4, 6];
     let title = format!(
-        "Precision shares around contact (force over {:.1} N), in percent (contacts); every step is in contact.csv",
+        "Precision shares around contact (force over {:.1} N), in percent (contacts)",
         summary.contact_newtons
     );
     let mut columns = vec!["model: expert".to_owned()];

@@ -80,6 +80,17 @@ pub struct Scope {
     pub split: String,
     /// Why each episode of it that could not be scored was left out.
     pub left_out: Vec<String>,
+    /// What pose regressors were fitted anew on; none for those that training left.
+    pub refit: Option<Refit>,
+}
+
+/// A dataset that pose regressors were fitted anew on.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Refit {
+    /// Its name.
+    pub data: String,
+    /// Names what it holds.
+    pub data_hash: String,
 }
 
 /// What the tables and figures are drawn from.

@@ -45,7 +45,8 @@ pub struct Calibration {
     /// Mean continuous ranked probability score along x and y, in cm (D13).
     pub crps_cm: [f64; 2],
     /// Overconfident where the 95 % claimed lie above the binomial interval of what is held, underconfident where
-    /// below. With fewer than 73 episodes nothing can look underconfident: all of them inside is what 95 % may give.
+    /// below; where within, what the mean NEES says: with fewer than 73 episodes all of them inside is what 95 % may
+    /// give, and only it can tell claiming too little.
     pub verdict: Verdict,
     /// The verdict in words: "claims 95 %, holds 71 % [64, 77] of 160: overconfident".
     pub sentence: String,
@@ -79,7 +80,10 @@ pub fn calibration(errors: &[Error2]) -> Option<Calibration> {
     let n = counted.len();
     let skipped = errors.len() - n;
     let claim = CoveragePoint::at(CLAIM, &pit);
-    let verdict = Verdict::of_claim(claim, n);
+    let by_claim = Verdict::of_claim(claim, n);
+    let by_nees = horizon_nees(0, errors)
+        .filter(|nees| by_claim == Verdict::Calibrated && nees.verdict != Verdict::Calibrated);
+    let verdict = by_nees.map_or(by_claim, |nees| nees.verdict);
     let mean = |of: &dyn Fn(&(Error2, f64)) -> f64| counted.iter().map(of).sum::<f64>() / n as f64;
     Some(Calibration {
         n,
@@ -91,7 +95,7 @@ pub fn calibration(errors: &[Error2]) -> Option<Calibration> {
         nll: mean(&|(error, nees)| scores::nll(error, *nees)),
         crps_cm: [0, 1].map(|axis| 1e2 * mean(&|(error, _)| crps(error, axis))),
         verdict,
-        sentence: verdict::sentence(claim, n, skipped, verdict),
+        sentence: verdict::sentence(claim, n, skipped, verdict, by_nees.map(|nees| nees.mean)),
     })
 }
 

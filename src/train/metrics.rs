@@ -8,6 +8,7 @@ use std::time::{Duration, SystemTime};
 use serde::{Deserialize, Serialize};
 
 use super::TrainError;
+use super::state::State;
 use super::step::{Gradients, Losses};
 use super::tensorboard::EventWriter;
 use super::validate::Validation;
@@ -16,7 +17,8 @@ use crate::model::checkpoint::{self, CheckpointError};
 /// The file that metrics are appended to.
 pub const METRICS: &str = "metrics.jsonl";
 
-/// One epoch. Two runs of one seed, data and number of threads differ in nothing but the seconds.
+/// One epoch, or what the budget left of the last one. Two runs of one seed, data and number of threads differ in nothing
+/// but the seconds, and in the means over an epoch in which a sitting began.
 #[derive(Clone, Debug, Serialize)]
 pub struct Line {
     /// Updates so far.
@@ -27,7 +29,7 @@ pub struct Line {
     pub elapsed_secs: f64,
     /// Of the last update.
     pub learning_rate: f64,
-    /// Running means of the losses.
+    /// Running means of the losses, 5 % an update.
     pub train: Losses,
     /// Means over the epoch's updates.
     #[serde(flatten)]
@@ -115,6 +117,25 @@ impl Meter {
 }
 
 impl Line {
+    /// Of a run as it stands.
+    pub fn of(
+        state: &State,
+        epoch_updates: u64,
+        learning_rate: f64,
+        meter: Summary,
+        val: Option<Validation>,
+    ) -> Self {
+        Self {
+            update: state.update,
+            epoch: state.update / epoch_updates,
+            elapsed_secs: state.elapsed.as_secs_f64(),
+            learning_rate,
+            train: state.losses.unwrap_or_default(),
+            meter,
+            val,
+        }
+    }
+
     /// The same as TensorBoard's tags and values.
     fn scalars(&self) -> BTreeMap<String, f32> {
         let mut all = BTreeMap::new();
@@ -130,7 +151,7 @@ impl Line {
                 all.insert("val/open_loop_psnr_db".to_owned(), mean as f32);
             }
             for (i, &kl) in val.kl_per_latent.iter().enumerate() {
-                all.insert(format!("kl_per_latent/{i:02}"), kl as f32);
+                all.insert(format!("val/kl_per_latent/{i:02}"), kl as f32);
             }
         }
         for (network, norm) in &self.meter.gradient_norm {

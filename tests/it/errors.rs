@@ -128,6 +128,38 @@ fn a_model_that_is_not_there() {
 }
 
 #[test]
+fn a_training_that_cannot_begin() {
+    let checkpoint = Checkpoint::new();
+    // Its episodes are all to be tested on.
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("sample_data/episodes.mcap");
+    let config = checkpoint.path.join(CONFIG);
+    let out = checkpoint.path.join("run");
+    let refused = |options: &[&OsStr], words: &[&str]| {
+        let common: [&OsStr; 5] = [
+            "train".as_ref(),
+            "--data".as_ref(),
+            data.as_ref(),
+            "--out".as_ref(),
+            out.as_ref(),
+        ];
+        complaint(&[&common[..], options].concat(), words);
+    };
+    refused(
+        &[
+            "--model".as_ref(),
+            "vp".as_ref(),
+            "--config".as_ref(),
+            config.as_ref(),
+        ],
+        &["--model vp is not what --config describes", "leave one"],
+    );
+    refused(
+        &[],
+        &["0 episodes to train on", "of another split (poescope info)"],
+    );
+}
+
+#[test]
 fn damaged_weights() {
     let checkpoint = Checkpoint::new();
     let whole = fs::read(checkpoint.weights()).unwrap();

@@ -471,7 +471,7 @@ fn seeds_stand_together_and_regressors_can_be_fitted_anew() {
     assert_eq!(report["seeds"][0]["seeds"], 2);
     let found = &report["comparisons"][0];
     assert_eq!(
-        [&found["better"], &found["worse"]],
+        [&found["first"], &found["second"]],
         ["v-h-p", "v-h-p (prior off)"]
     );
     assert_eq!(found["seeds"][1], 2);

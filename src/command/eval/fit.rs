@@ -16,6 +16,7 @@ use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
 use crate::eval::regression;
 use crate::eval::score::{Candidate, Scorer};
+use crate::eval::summary::Refit;
 use crate::model::inspect::Inspector;
 use crate::model::probe::Regressors;
 
@@ -34,8 +35,12 @@ pub struct Fit<'a> {
 }
 
 impl Fit<'_> {
-    /// Fits those of each candidate.
-    pub fn each(&self, candidates: &mut [Candidate], entrants: &[Entrant]) -> anyhow::Result<()> {
+    /// Fits those of each candidate; says on what.
+    pub fn each(
+        &self,
+        candidates: &mut [Candidate],
+        entrants: &[Entrant],
+    ) -> anyhow::Result<Refit> {
         let mut scorers = Vec::with_capacity(entrants.len());
         for entrant in entrants {
             let path = entrant.path.display();
@@ -53,7 +58,10 @@ impl Fit<'_> {
             let label = candidate.label.clone();
             candidate.regressors = Some(self.one(scorer, label, &dataset, train)?);
         }
-        Ok(())
+        Ok(Refit {
+            data: dataset.name().to_owned(),
+            data_hash: dataset.data_hash().to_owned(),
+        })
     }
 
     fn one(

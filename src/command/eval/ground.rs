@@ -44,7 +44,7 @@ impl Ground {
                     data: head.data.clone(),
                     data_hash: head.data_hash.clone(),
                     split: split.unwrap_or_else(|| head.split.clone()),
-                    left_out: Vec::new(),
+                    ..Scope::default()
                 },
                 episodes: head.episodes.clone(),
             });
@@ -56,7 +56,7 @@ impl Ground {
             data: dataset.name().to_owned(),
             data_hash: dataset.data_hash().to_owned(),
             split: split.name().to_owned(),
-            left_out: Vec::new(),
+            ..Scope::default()
         };
         Ok(Self {
             dataset: Some(dataset),

@@ -9,8 +9,8 @@ pub(super) fn comparisons(summary: &Summary) -> Table {
     Table {
         name: "comparisons",
         columns: vec![
-            text("first", "claimed to be better", rows, |c| c.better.clone()),
-            text("second", "than this", rows, |c| c.worse.clone()),
+            text("first", "claimed to be better", rows, |c| c.first.clone()),
+            text("second", "than this", rows, |c| c.second.clone()),
             whole("episodes", "pairs", rows, |c| c.episodes as i64),
             number(
                 "psnr_db",

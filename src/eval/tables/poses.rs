@@ -1,6 +1,7 @@
 //! Where the object is read to be.
 
 use super::column::{number, text, whole};
+use crate::eval::regression::FittedOn;
 use crate::eval::summary::Summary;
 use crate::eval::table::Table;
 
@@ -21,6 +22,15 @@ pub(super) fn regression(summary: &Summary) -> Table {
                 "train, or the scored split itself",
                 rows,
                 |r| r.fitted_on.name().to_owned(),
+            ),
+            text(
+                "refit_on",
+                "hash of what `train` was fitted anew on; empty for what training left",
+                rows,
+                |r| match (r.fitted_on, &summary.scope.refit) {
+                    (FittedOn::Train, Some(refit)) => refit.data_hash.clone(),
+                    _ => String::new(),
+                },
             ),
             whole("count", "beliefs", rows, |r| r.count as i64),
             number("rmse_cm", "root of the mean squared distance", rows, |r| {

@@ -1,22 +1,25 @@
 //! The paper's ellipses of position errors.
 
 use super::style;
+use crate::eval::protocol::Protocol;
 use crate::eval::regression::{Beliefs, FittedOn, Regressor};
 use crate::eval::summary::Summary;
-use crate::export::plot::{Anchor, Panel, Plot, Series};
+use crate::export::plot::{Anchor, Panel, Plot, Series, Style};
 use crate::measure::ellipse::{Ellipse, ONE_SIGMA_MASS};
 
 /// Corners of an outline.
 const CORNERS: usize = 72;
 
 /// Mean absolute errors along x and y of predicted positions, with an ellipse of one standard deviation; none where no
-/// pose was recorded.
+/// pose was recorded. Read by least squares, as in the paper, whose MIT set has the network.
 pub fn ellipses(summary: &Summary) -> Option<Plot> {
+    let regressor = match summary.protocol {
+        Protocol::MIT => Regressor::Network,
+        _ => Regressor::Linear,
+    };
     let of = |fitted_on: FittedOn| {
         let rows = summary.regression.iter().filter(move |r| {
-            r.beliefs == Beliefs::Predicted
-                && r.regressor == Regressor::Linear
-                && r.fitted_on == fitted_on
+            r.beliefs == Beliefs::Predicted && r.regressor == regressor && r.fitted_on == fitted_on
         });
         rows.collect::<Vec<_>>()
     };
@@ -38,12 +41,16 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
             let arm = 0.03;
             let cross = [[-arm, 0.0], [arm, 0.0], [0.0, 0.0], [0.0, -arm], [0.0, arm]];
             let cross = cross.map(|[x, y]| [centre[0] + x, centre[1] + y]).to_vec();
-            let line = |points| Series {
-                style: style.clone(),
+            let line = |style, points| Series {
+                style,
                 points,
                 band: Vec::new(),
             };
-            [line(outline), line(cross)]
+            let unbroken = Style {
+                dash: Vec::new(),
+                ..style.clone()
+            };
+            [line(style, outline), line(unbroken, cross)]
         })
         .collect();
     if series.is_empty() {
@@ -52,7 +59,8 @@ pub fn ellipses(summary: &Summary) -> Option<Plot> {
     let panel = Panel {
         size: [460.0, 420.0],
         title: format!(
-            "Absolute position errors, predicted; regression fitted on {}",
+            "Absolute position errors, predicted; {} fitted on {}",
+            regressor.name(),
             fitted_on.name()
         ),
         axes: ["|x error|, cm".to_owned(), "|y error|, cm".to_owned()],

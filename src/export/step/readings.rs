@@ -193,7 +193,7 @@ pub const OF_EXPERT: &[Reading<OfExpert>] = &[
     ),
     reading(
         "mahalanobis",
-        "distance of the belief without it, in σ of that belief (D6)",
+        "how far the belief without it is from the belief, in σ of the former (D6)",
         |step, i| step.reading(i)?.mahalanobis,
     ),
     reading(

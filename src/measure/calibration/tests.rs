@@ -283,3 +283,26 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn where_the_claim_tells_nothing_the_mean_nees_speaks() {
+    let outcome = World::honest().last(32, 3, 11);
+    let wide: Vec<Error2> = outcome
+        .fused
+        .iter()
+        .map(|e| e.beside(e.covariance.map(|c| 2.0 * c)))
+        .collect();
+    let found = calibration(&wide).expect("errors");
+    let nees = horizon_nees(0, &wide).expect("errors");
+    // All of 32 inside is what 95 % may give.
+    assert_eq!((held_95(&wide), nees.verdict), (1.0, found.verdict));
+    assert_eq!(found.verdict, Verdict::Underconfident);
+    let told = format!(
+        "underconfident, mean NEES {:.1} where 2 is right",
+        nees.mean
+    );
+    assert_eq!(
+        found.sentence,
+        format!("claims 95 %, holds 100 % [89, 100] of 32: {told}")
+    );
+}

@@ -6,10 +6,6 @@ use serde::Serialize;
 
 use super::{CoveragePoint, FEW};
 
-/// With fewer errors than this, holding all of them is no evidence of claiming too little: Wilson's interval of n out
-/// of n reaches down to `n / (n + 1.96²)`.
-const TELLING: usize = 73;
-
 /// Whether a claim of confidence holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -55,12 +51,18 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// "claims 95 %, holds 71 % [64, 77] of 160: overconfident".
-pub(super) fn sentence(point: CoveragePoint, n: usize, skipped: usize, verdict: Verdict) -> String {
+/// "claims 95 %, holds 71 % [64, 77] of 160: overconfident". `by_nees` is the mean NEES, where that alone says so.
+pub(super) fn sentence(
+    point: CoveragePoint,
+    n: usize,
+    skipped: usize,
+    verdict: Verdict,
+    by_nees: Option<f64>,
+) -> String {
     let [claimed, held, low, high] =
         [point.claimed, point.held, point.low, point.high].map(|part| 100.0 * part);
     // Whole percents, unless rounding would put the claim into an interval that excludes it.
-    let excluded = matches!(verdict, Verdict::Overconfident | Verdict::Underconfident);
+    let excluded = point.claimed < point.low || point.claimed > point.high;
     let digits = (0..3)
         .find(|&digits| {
             let shown = |x: f64| format!("{x:.digits$}");
@@ -71,9 +73,9 @@ pub(super) fn sentence(point: CoveragePoint, n: usize, skipped: usize, verdict: 
         0 => String::new(),
         _ => format!(", {skipped} more without a usable covariance"),
     };
-    let word = match verdict {
-        Verdict::TooFew => format!("too few to say, {FEW} or more are needed"),
-        Verdict::Calibrated if n < TELLING => format!("{verdict} as far as {n} can tell"),
+    let word = match (verdict, by_nees) {
+        (Verdict::TooFew, _) => format!("too few to say, {FEW} or more are needed"),
+        (_, Some(mean)) => format!("{verdict}, mean NEES {mean:.1} where 2 is right"),
         _ => verdict.to_string(),
     };
     format!(

@@ -46,7 +46,7 @@ pub struct ExpertReading {
     pub claim: Option<KlParts>,
     /// Entropy in nats that it removes when it comes last (D5); none where it is off or the only one.
     pub information_nats: Option<f32>,
-    /// Distance of the belief without it, in standard deviations of that belief (D6).
+    /// How far the belief without it is from the belief, in standard deviations of the former (D6).
     pub mahalanobis: Option<f32>,
     /// The belief's position without it (D6).
     pub without: Option<Estimate>,

@@ -167,7 +167,8 @@ impl Board {
         let say = |what: &str, sentence: &str| format!("{what} {sentence}");
         let mut sentences = Vec::new();
         if let Some(filtered) = &filtered {
-            sentences.push(say("the belief", &filtered.sentence));
+            let what = format!("the belief at image {}", self.settings.context);
+            sentences.push(say(&what, &filtered.sentence));
         }
         if let Some(bare) = mean_nees(&self.bare).filter(|_| filtered.is_some()) {
             sentences.push(format!(

@@ -221,9 +221,6 @@ impl Worker {
         let Some(inferred) = self.memo.inferred(&look.key) else {
             return Ok(());
         };
-        if !look.predictor.info().has_product() {
-            return Ok(());
-        }
         let known = request.known.as_deref();
         let key = ReadingsKey {
             belief: look.key.clone(),

@@ -8,7 +8,7 @@ use super::opened::Opened;
 use crate::measure::active::LatentStats;
 use crate::measure::attribution::attribution;
 use crate::measure::calibration::nees;
-use crate::measure::divergence::kl_parts;
+use crate::measure::divergence::{KlParts, kl_parts};
 use crate::measure::gaussian::Factor;
 use crate::measure::innovation::{conflict, disagreements, nis, predicted_covariance};
 use crate::measure::leave_one_out::without;
@@ -48,7 +48,7 @@ struct Reader<'a> {
     latent: usize,
 }
 
-/// Reads every step.
+/// Reads every step. Of a model that multiplies nothing there is only how far its belief moves and how honest it is.
 pub fn read(
     inferred: &Inferred,
     opened: &Opened,
@@ -94,6 +94,15 @@ pub fn read(
         let Some(belief) = inferred.belief_at(step) else {
             continue;
         };
+        let surprise = reader.surprise(belief);
+        series.surprise[step] = surprise.mean + surprise.spread;
+        if let Some(truth) = opened.poses.get(step) {
+            let [with, bare] = reader.nees(belief, [truth.x, truth.y]);
+            (series.nees[step], series.nees_bare[step]) = (with, bare);
+        }
+        if !predictor.info().has_product() {
+            continue;
+        }
         let view = reader.view(belief);
         for (i, reading) in view.experts.iter().enumerate() {
             let Some(nis) = &reading.nis else { continue };
@@ -105,19 +114,12 @@ pub fn read(
             series.conflict[step] = conflict.energy;
             series.conflict_bounds[step] = conflict.bounds;
         }
-        if let Some(surprise) = &view.surprise {
-            series.surprise[step] = surprise.mean + surprise.spread;
-        }
         for (row, share) in series
             .share_position
             .iter_mut()
             .zip(reader.position_shares(belief).into_iter().flatten())
         {
             row[step] = share;
-        }
-        if let Some(truth) = opened.poses.get(step) {
-            let [with, bare] = reader.nees(belief, [truth.x, truth.y]);
-            (series.nees[step], series.nees_bare[step]) = (with, bare);
         }
         fusion[step] = Some(Arc::new(view));
     }
@@ -171,7 +173,7 @@ impl Reader<'_> {
         let (prior_m, belief_m) = (at(prior.mean), at(posterior.mean));
         FusionView {
             experts: (0..factors.len()).map(reading).collect(),
-            surprise: Some(kl_parts(posterior, prior)),
+            surprise: Some(self.surprise(belief)),
             disagreements: disagreements(&factors, &self.active),
             conflict: conflict(&factors, &self.active),
             correction_m: prior_m
@@ -185,6 +187,11 @@ impl Reader<'_> {
             active_from: self.active_from.clone(),
             importance_m: Arc::clone(&self.importance_m),
         }
+    }
+
+    /// `KL(belief ‖ prior)` (D2).
+    fn surprise(&self, belief: usize) -> KlParts {
+        kl_parts(self.inferred.posterior(belief), self.inferred.prior(belief))
     }
 
     /// A P Aᵀ + Q of the transition that led to a belief; none for the first, which nothing led to.

@@ -18,8 +18,8 @@ use ratatui::style::Style;
 use super::{empty, mark};
 use crate::measure::chi2::Bounds;
 use crate::modality::Expert;
-use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::reading::SeriesView;
+use crate::session::snapshot::{Badge, Snapshot};
 use crate::tui::axis::Axis;
 use crate::tui::face::Face;
 use crate::tui::paint::{column, eighth, put, right, short, text};
@@ -45,7 +45,7 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     let steps = snapshot.steps();
     let axis = Axis::of(pane.width, steps);
     let series = match &snapshot.series {
-        Some(series) if steps > 0 => series,
+        Some(series) if steps > 0 && snapshot.badge != Badge::NoProduct => series,
         _ => {
             text(buf, pane, 0, 0, "series", dim());
             text(buf, pane, 7, 0, &empty::why(snapshot), dim());
