@@ -73,11 +73,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
             "{}: {sets}, where a batch needs {} of split `train`; {}",
             args.data.display(),
             config.training.batch,
-            if sets.train().is_empty() {
-                "its episodes are of another split (poescope info)"
-            } else {
-                "mend or record more, or lower `training.batch` (--set)"
-            }
+            sets.remedy()
         );
     }
     super::note(&format!("{}: {sets}", dataset.name()));

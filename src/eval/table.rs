@@ -5,8 +5,8 @@
 pub enum Cells {
     /// Words.
     Text(Vec<String>),
-    /// Whole numbers.
-    Whole(Vec<i64>),
+    /// Whole numbers; none where nothing is known.
+    Whole(Vec<Option<i64>>),
     /// Numbers; none where nothing is known.
     Number(Vec<Option<f64>>),
 }

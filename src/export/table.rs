@@ -36,7 +36,9 @@ pub fn write_csv(table: &Table, out: &Path) -> Result<(), ExportError> {
         for column in &table.columns {
             match &column.cells {
                 Cells::Text(cells) => fields.push(&cells[row]),
-                Cells::Whole(cells) => fields.push(&cells[row].to_string()),
+                Cells::Whole(cells) => {
+                    fields.push(&cells[row].map_or_else(String::new, |n| n.to_string()));
+                }
                 Cells::Number(cells) => {
                     fields.push(&cells[row].map_or_else(String::new, |n| format!("{n:?}")));
                 }
@@ -92,7 +94,7 @@ fn write(table: &Table, output: &mut Output) -> Result<(), ParquetError> {
 fn field(column: &Column) -> Result<Type, ParquetError> {
     let (physical, repetition) = match column.cells {
         Cells::Text(_) => (Physical::BYTE_ARRAY, Repetition::REQUIRED),
-        Cells::Whole(_) => (Physical::INT64, Repetition::REQUIRED),
+        Cells::Whole(_) => (Physical::INT64, Repetition::OPTIONAL),
         Cells::Number(_) => (Physical::DOUBLE, Repetition::OPTIONAL),
     };
     let logical = matches!(column.cells, Cells::Text(_)).then_some(LogicalType::String);
@@ -100,6 +102,12 @@ fn field(column: &Column) -> Result<Type, ParquetError> {
         .with_repetition(repetition)
         .with_logical_type(logical)
         .build()
+}
+
+/// Level 0 is a cell without a number, 1 one that has it; the numbers follow each other.
+fn known<N: Copy>(cells: &[Option<N>]) -> (Vec<i16>, Vec<N>) {
+    let levels = cells.iter().map(|cell| i16::from(cell.is_some()));
+    (levels.collect(), cells.iter().flatten().copied().collect())
 }
 
 fn cells(cells: &Cells, writer: &mut SerializedColumnWriter<'_>) -> Result<(), ParquetError> {
@@ -111,12 +119,13 @@ fn cells(cells: &Cells, writer: &mut SerializedColumnWriter<'_>) -> Result<(), P
                 .write_batch(&bytes, None, None)?;
         }
         Cells::Whole(cells) => {
-            writer.typed::<Int64Type>().write_batch(cells, None, None)?;
+            let (known, numbers) = known(cells);
+            writer
+                .typed::<Int64Type>()
+                .write_batch(&numbers, Some(&known), None)?;
         }
         Cells::Number(cells) => {
-            // Level 0 is a cell without a number; those that have one follow each other.
-            let known: Vec<i16> = cells.iter().map(|c| i16::from(c.is_some())).collect();
-            let numbers: Vec<f64> = cells.iter().flatten().copied().collect();
+            let (known, numbers) = known(cells);
             writer
                 .typed::<DoubleType>()
                 .write_batch(&numbers, Some(&known), None)?;

@@ -113,6 +113,15 @@ impl Sets {
     pub fn val(&self) -> Episodes<'_> {
         Episodes::new(&self.store, &self.val)
     }
+
+    /// What to do where there are too few to train on.
+    pub fn remedy(&self) -> &'static str {
+        if self.train.is_empty() && self.left_out.is_empty() {
+            "its episodes are of another split (poescope info)"
+        } else {
+            "mend or record more, or lower `training.batch` (--set)"
+        }
+    }
 }
 
 impl fmt::Display for Sets {

@@ -18,13 +18,13 @@ pub(super) fn text<T>(
 }
 
 /// Whole numbers.
-pub(super) fn whole<T>(
+pub(super) fn whole<T, N: Into<Option<i64>>>(
     name: &'static str,
     about: &'static str,
     rows: &[T],
-    of: impl Fn(&T) -> i64,
+    of: impl Fn(&T) -> N,
 ) -> Column {
-    let cells = Cells::Whole(rows.iter().map(of).collect());
+    let cells = Cells::Whole(rows.iter().map(|row| of(row).into()).collect());
     Column { name, about, cells }
 }
 

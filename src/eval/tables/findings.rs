@@ -51,14 +51,14 @@ pub(super) fn comparisons(summary: &Summary) -> Table {
                 rows,
                 |c| Some(c.won),
             ),
-            number(
+            whole(
                 "seeds_won",
                 "pairs of seeds in which the first has the higher mean PSNR",
                 rows,
-                |c| c.seeds.map(|[won, _]| won as f64),
+                |c| c.seeds.map(|[won, _]| won as i64),
             ),
-            number("seeds", "pairs of seeds", rows, |c| {
-                c.seeds.map(|[_, all]| all as f64)
+            whole("seeds", "pairs of seeds", rows, |c| {
+                c.seeds.map(|[_, all]| all as i64)
             }),
             text("finding", "by the interval of PSNR", rows, |c| {
                 c.finding.name().to_owned()

@@ -59,11 +59,11 @@ pub(super) fn models(summary: &Summary) -> Table {
                 rows,
                 |q| model(q).map_or_else(String::new, |model| model.hash.clone()),
             ),
-            number(
+            whole(
                 "seed",
                 "of its training, where its report says",
                 rows,
-                |q| Some(model(q)?.seed? as f64),
+                |q| i64::try_from(model(q)?.seed?).ok(),
             ),
             whole("context", "images seen", rows, |_| protocol.context as i64),
             whole("horizon", "images predicted", rows, |_| {

@@ -297,10 +297,7 @@ fn where_the_claim_tells_nothing_the_mean_nees_speaks() {
     // All of 32 inside is what 95 % may give.
     assert_eq!((held_95(&wide), nees.verdict), (1.0, found.verdict));
     assert_eq!(found.verdict, Verdict::Underconfident);
-    let told = format!(
-        "underconfident, mean NEES {:.1} where 2 is right",
-        nees.mean
-    );
+    let told = format!("underconfident (mean NEES {:.1}, not 2)", nees.mean);
     assert_eq!(
         found.sentence,
         format!("claims 95 %, holds 100 % [89, 100] of 32: {told}")

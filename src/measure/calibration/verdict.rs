@@ -75,7 +75,7 @@ pub(super) fn sentence(
     };
     let word = match (verdict, by_nees) {
         (Verdict::TooFew, _) => format!("too few to say, {FEW} or more are needed"),
-        (_, Some(mean)) => format!("{verdict}, mean NEES {mean:.1} where 2 is right"),
+        (_, Some(mean)) => format!("{verdict} (mean NEES {mean:.1}, not 2)"),
         _ => verdict.to_string(),
     };
     format!(
