@@ -32,8 +32,8 @@ pub const THREAD: &str = "poescope-survey";
 const PERIOD: Duration = Duration::from_millis(100);
 /// Results after which the scores are kept, should the program end before all are there.
 const KEPT_EVERY: usize = 256;
-/// What the experts say is kept for so many episodes; those beyond are encoded again.
-const SHEETS: usize = 4096;
+/// What the experts say is kept of so many steps a model, some 100 MB; episodes beyond are encoded again.
+const KEPT_STEPS: usize = 1 << 18;
 /// How long it sleeps before it looks again whether the worker is done.
 const PATIENCE: Duration = Duration::from_micros(500);
 
@@ -134,6 +134,8 @@ struct Scored {
     scores: Vec<Option<Arc<EpisodeScore>>>,
     sheets: Vec<Option<Arc<Sheet>>>,
     known: Option<Arc<Known>>,
+    /// Steps of the episodes that `sheets` has.
+    kept_steps: usize,
     begun: bool,
     /// Results that came since it began.
     new: usize,
@@ -280,13 +282,14 @@ impl Surveyor {
     ) -> Result<Sheet, String> {
         let loaded = self.source.load(episode, predictor.layout());
         let loaded = loaded.map_err(|error| error.to_string())?;
-        let slot = &mut self.scored[model].sheets[episode];
-        if let Some(known) = slot {
+        if let Some(known) = &self.scored[model].sheets[episode] {
             return Ok(Sheet::with(Arc::clone(&known.trace), loaded));
         }
         let sheet = Sheet::of(loaded, predictor)?;
-        if episode < SHEETS {
-            *slot = Some(Arc::new(sheet.without_frames()));
+        let scored = &mut self.scored[model];
+        if scored.kept_steps + sheet.steps <= KEPT_STEPS {
+            scored.kept_steps += sheet.steps;
+            scored.sheets[episode] = Some(Arc::new(sheet.without_frames()));
         }
         Ok(sheet)
     }
@@ -332,8 +335,8 @@ impl Surveyor {
                 board.take(&sheet, predictor.as_ref());
                 Ok(())
             });
-            if taken.is_err() {
-                board.leave_out();
+            if let Err(why) = taken {
+                board.leave_out(why);
             }
             self.board = Some(Arc::new(board.progress()));
             self.publish_now_and_then(request);

@@ -30,6 +30,8 @@ pub struct BoardView {
     pub by_head: Vec<HorizonNees>,
     /// NEES at each horizon with A P Aᵀ + Q carried along.
     pub by_propagation: Vec<HorizonNees>,
+    /// NEES of the filtered belief at the images that the horizons are of: what it would be, had it gone on seeing.
+    pub by_filter: Vec<HorizonNees>,
     /// Correlation between the experts' errors, and what it does to confidence; `a` and `b` are of `experts`.
     pub dependence: Option<Dependence>,
     /// The sensor experts that `dependence` counts.

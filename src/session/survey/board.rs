@@ -30,6 +30,8 @@ pub struct Board {
     by_head: Vec<Vec<Error2>>,
     /// The same with A P Aᵀ + Q carried along.
     by_propagation: Vec<Vec<Error2>>,
+    /// The same of the belief that goes on seeing.
+    by_filter: Vec<Vec<Error2>>,
     /// Of the filtered belief without R_p.
     bare: Vec<Error2>,
     /// Of each sensor expert that is on, alone, an error an episode, in metres.
@@ -37,6 +39,8 @@ pub struct Board {
     /// Sums over episodes of what precision the prior brings to the position, and a sensor expert on average.
     precisions: [f64; 2],
     residual: [f32; 3],
+    /// Why the first of the episodes that could not be read was not.
+    fault: Option<String>,
 }
 
 impl Board {
@@ -49,16 +53,19 @@ impl Board {
             looked_at: 0,
             by_head: Vec::new(),
             by_propagation: Vec::new(),
+            by_filter: Vec::new(),
             bare: Vec::new(),
             single: Vec::new(),
             precisions: [0.0; 2],
             residual: [0.0; 3],
+            fault: None,
         }
     }
 
-    /// An episode that cannot be read.
-    pub fn leave_out(&mut self) {
+    /// An episode that cannot be read, and why.
+    pub fn leave_out(&mut self, why: String) {
         self.looked_at += 1;
+        self.fault.get_or_insert(why);
     }
 
     /// Adds an episode; one without poses or controls only counts as looked at.
@@ -84,6 +91,7 @@ impl Board {
         self.bare.push(off.beside(residual.map(|r| -r)));
         push(&mut self.by_head, 0, off);
         push(&mut self.by_propagation, 0, off);
+        push(&mut self.by_filter, 0, off);
         let weights = predictor.position_weights()?;
         let factors = inferred.factors(from);
         let brings = |factor: &Factor| {
@@ -112,7 +120,11 @@ impl Board {
         for (step, covariance) in rolled.covariances(posterior.log_var).enumerate() {
             let (mean, log_var) = rolled.gaussians.row(step);
             let at = position(predictor, Gaussian { mean, log_var })?;
-            let off = at.error(sheet.truth_m(rollout.start + 1 + step)?);
+            let image = rollout.start + 1 + step;
+            let truth_m = sheet.truth_m(image)?;
+            let off = at.error(truth_m);
+            let seeing_on = inferred.posterior(inferred.belief_at(image)?);
+            let seen = position(predictor, seeing_on)?;
             let plane = plane(weights, &covariance)?;
             let propagated = Error2 {
                 covariance: std::array::from_fn(|i| plane[i] + residual[i]),
@@ -120,6 +132,7 @@ impl Board {
             };
             push(&mut self.by_head, step + 1, off);
             push(&mut self.by_propagation, step + 1, propagated);
+            push(&mut self.by_filter, step + 1, seen.error(truth_m));
         }
         Some(())
     }
@@ -142,7 +155,9 @@ impl Board {
                 predictor.info().name
             ))
         } else if self.bare.is_empty() {
-            Some("no episode has a recorded object pose and controls".to_owned())
+            let why = "no episode has a recorded object pose and controls";
+            let read = |fault: &String| format!("no episode can be measured; the first: {fault}");
+            Some(self.fault.as_ref().map_or_else(|| why.to_owned(), read))
         } else {
             None
         };
@@ -150,9 +165,11 @@ impl Board {
         let everywhere = |errors: &&Vec<Error2>| errors.len() == self.bare.len();
         let horizon = self.by_head.iter().take_while(everywhere).count().max(1) - 1;
         let filtered = self.by_head.first().and_then(|e| calibration(e));
-        let predicted = (horizon > 0).then(|| calibration(&self.by_head[horizon]));
-        let predicted = predicted.flatten();
-        let propagated = (horizon > 0).then(|| calibration(&self.by_propagation[horizon]));
+        let at_horizon = |lists: &[Vec<Error2>]| {
+            let errors = lists.get(horizon).filter(|_| horizon > 0)?;
+            calibration(errors)
+        };
+        let predicted = at_horizon(&self.by_head);
         let nees_of = |lists: &[Vec<Error2>]| -> Vec<HorizonNees> {
             let each = lists.iter().enumerate();
             each.filter_map(|(h, errors)| horizon_nees(h, errors))
@@ -179,9 +196,14 @@ impl Board {
             let what = format!("the prediction {horizon} steps on");
             sentences.push(say(&what, &predicted.sentence));
         }
-        if let Some(propagated) = propagated.flatten() {
+        if let Some(propagated) = at_horizon(&self.by_propagation) {
             let what = "with its spread carried along (A P Aᵀ + Q) it";
             sentences.push(say(what, &propagated.sentence));
+        }
+        if let Some(seeing_on) = at_horizon(&self.by_filter) {
+            let image = self.settings.context + horizon;
+            let what = format!("seeing on, the belief at image {image}");
+            sentences.push(say(&what, &seeing_on.sentence));
         }
         if let Some(dependence) = &dependence {
             sentences.push(dependence.sentence.clone());
@@ -193,6 +215,7 @@ impl Board {
             predicted,
             by_head: nees_of(&self.by_head),
             by_propagation: nees_of(&self.by_propagation),
+            by_filter: nees_of(&self.by_filter),
             dependence,
             experts: self.single.iter().map(|(expert, _)| *expert).collect(),
             sentences,

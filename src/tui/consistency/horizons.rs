@@ -1,12 +1,14 @@
-//! NEES at each horizon, against the band in which the mean of so many episodes lies (D11).
+//! NEES at each horizon, and of the belief that goes on seeing, against the band in which the mean of so many episodes
+//! lies (D11).
 //!
 //! ```text
 //! NEES ──────── mean over episodes, not time
 //! 10│        ○ ○ ○
 //!  5│  ○ ○ ○
 //!  2│●─●─●─●─●─●─●─   ⢀⢀ band
+//!  1│  □ □ □ □ □ □
 //!   └now  +5     +11
-//! ● A P Aᵀ+Q  ○ head  ⠂⠂ 95 % if honest
+//! ● A P Aᵀ+Q  ○ head  □ seeing on  ⠂⠂ 95 % if honest
 //! ```
 
 use ratatui::buffer::Buffer;
@@ -36,24 +38,26 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         return;
     }
     let inner = below_title(pane);
-    let both = || board.by_head.iter().chain(&board.by_propagation);
+    let predicted = || board.by_head.iter().chain(&board.by_propagation);
     let means = || {
-        both()
+        predicted()
+            .chain(&board.by_filter)
             .map(|at| at.mean as f32)
             .filter(|mean| mean.is_finite())
     };
     let most = means().fold(0.0, f32::max);
     let is_log = most > LARGE;
     title(buf, pane, "NEES", "mean over episodes, not time", focused);
-    let Some(last) = both().map(|at| at.horizon).max() else {
+    let Some(last) = predicted().map(|at| at.horizon).max() else {
         text(buf, inner, 0, 0, "no probe, or too few episodes", dim());
         return;
     };
 
     let ink = face.depth.ink(PREDICTION);
-    let entries: [Entry; 3] = [
+    let entries: [Entry; 4] = [
         ("●", Style::new(), "A P Aᵀ+Q"),
         ("○", ink, "head"),
+        ("□", dim(), "seeing on"),
         ("⠂⠂", dim(), "95 % if honest"),
     ];
     let plot_pane = legend_below(buf, inner, &entries);
@@ -79,10 +83,16 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
         Style::new(),
     );
     // The band is that of the most episodes; where fewer reach a horizon it would be wider there.
-    if let Some(widest) = both().max_by_key(|at| at.episodes) {
+    if let Some(widest) = predicted().max_by_key(|at| at.episodes) {
         plot.level(widest.low as f32, Stroke::Sparse, dim());
         plot.level(widest.high as f32, Stroke::Sparse, dim());
         plot.shade(widest.low as f32, widest.high as f32);
+    }
+    // At the first the three are one belief.
+    let mut later = line(&board.by_filter, |at| at.mean);
+    later.retain(|&(horizon, _)| horizon > 0.0);
+    for point in later {
+        plot.mark(point, '□', dim());
     }
     for point in line(&board.by_head, |at| at.mean) {
         plot.mark(point, '○', ink);

@@ -70,12 +70,12 @@ fn nees(report: &mut Report, board: &BoardView) {
     for (name, nees) in [
         ("head", &board.by_head),
         ("propagated", &board.by_propagation),
+        ("filtered", &board.by_filter),
     ] {
         let label = format!("consistency NEES {name} by horizon from 0");
         report.numbers(&label, &by_horizon(nees));
     }
-    let both = board.by_head.iter().chain(&board.by_propagation);
-    let fullest = both.max_by_key(|at| at.episodes);
+    let fullest = board.by_head.iter().max_by_key(|at| at.episodes);
     let band = fullest.map(|at| [at.low as f32, at.high as f32]);
     report.numbers(
         "consistency NEES of 95 percent if honest",
