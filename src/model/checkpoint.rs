@@ -67,7 +67,7 @@ impl CheckpointError {
 /// What to do about an error of the operating system, where that can be known.
 fn advice(cause: &std::io::Error) -> &'static str {
     match cause.kind() {
-        ErrorKind::NotFound => {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => {
             "; check the path: a checkpoint is a folder that `poescope train` has written"
         }
         ErrorKind::PermissionDenied => "; change the permissions, or choose another path",
@@ -211,7 +211,11 @@ pub fn read_tensors(path: &Path) -> Result<HashMap<String, Tensor>, CheckpointEr
     parse_tensors(path, &read_bytes(path)?)
 }
 
-fn parse_tensors(path: &Path, bytes: &[u8]) -> Result<HashMap<String, Tensor>, CheckpointError> {
+/// The same of bytes that have been read.
+pub(super) fn parse_tensors(
+    path: &Path,
+    bytes: &[u8],
+) -> Result<HashMap<String, Tensor>, CheckpointError> {
     candle_core::safetensors::load_buffer(bytes, &Device::Cpu).map_err(|error| {
         let what = format!("not safetensors ({})", first_line(&error));
         CheckpointError::weights(path)(what)
@@ -268,9 +272,8 @@ pub fn load_with_hash(folder: &Path) -> Result<(Model, Option<Probe>, String), C
     fill(&model, &path, &weights)?;
     let found = hash::probe(folder)?;
     let hash = hash::of_files(&about, &weights, found.as_deref());
-    let probe = match found {
-        Some(_) => Some(Probe::read(&folder.join(PROBE), model.config.latent)?),
-        None => None,
-    };
+    let probe = found
+        .map(|bytes| Probe::parse(&folder.join(PROBE), &bytes, model.config.latent))
+        .transpose()?;
     Ok((model, probe, hash))
 }

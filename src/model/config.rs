@@ -156,7 +156,16 @@ impl Config {
                 format!("has {count} of them, where fewer than {MOST} are possible"),
             );
         }
-        // K matrices of Z by Z and Z by U, the largest there are, each read from a hidden layer.
+        // A window encoder's last layer, and a window decoder's first.
+        let widest = 2 * MOST_CHANNELS * self.window * self.latent;
+        if widest > MOST_TOGETHER {
+            let what = format!(
+                "with {} latents these are {widest} numbers, more than {MOST_TOGETHER}",
+                self.latent
+            );
+            return refuse("window", what);
+        }
+        // K matrices of Z by Z and Z by U, each read from a hidden layer.
         let largest = self.mixtures * self.latent * (self.latent + 2);
         if largest > MOST_TOGETHER {
             let what = format!(
@@ -177,9 +186,11 @@ impl Config {
     }
 }
 
+/// The most channels of a layer of the window networks.
+const MOST_CHANNELS: usize = 256;
 /// No size of a model is larger.
 const MOST: usize = 4096;
-/// Nor are the base matrices of its dynamics together: 256 MiB of them.
+/// Nor is a layer, or are the base matrices of its dynamics together: 256 MiB of them.
 const MOST_TOGETHER: usize = 1 << 26;
 
 fn refuse<T>(key: &'static str, what: impl Into<String>) -> Result<T, ConfigError> {
@@ -218,6 +229,10 @@ mod tests {
             config.validate().map_err(|error| error.key)
         };
         assert_eq!(refused(|c| c.hidden = 4_000_000_000), Err("hidden"));
+        assert_eq!(
+            refused(|c| (c.window, c.latent, c.mixtures) = (4096, 2048, 1)),
+            Err("window")
+        );
         assert_eq!(refused(|c| c.step_secs = Some(-0.1)), Err("step_secs"));
         assert_eq!(refused(|c| c.training.epochs = 0), Err("training.epochs"));
         assert_eq!(refused(|c| c.experts.push(Expert::Haptic)), Err("experts"));

@@ -19,8 +19,11 @@ fn balanced(posterior: &DiagGaussian, prior: &DiagGaussian, balance: f64) -> Res
     }
     let towards_posterior = posterior.detach().kl(prior)?;
     let towards_prior = posterior.kl(&prior.detach())?;
-    towards_posterior.affine(2.0 * balance, 0.0)?
-        + towards_prior.affine(2.0 - 2.0 * balance, 0.0)?
+    // Both are the KL itself, whose value counts once.
+    let value = posterior.detach().kl(&prior.detach())?;
+    let both = (towards_posterior.affine(2.0 * balance, 0.0)?
+        + towards_prior.affine(2.0 - 2.0 * balance, 0.0)?)?;
+    both - value
 }
 
 /// What each latent adds to it: `(B, T, Z)`.
@@ -64,4 +67,42 @@ pub fn overshooting(
         (mean, hidden) = (prior.mean, shape(&next.hidden)?);
     }
     Ok(terms)
+}
+
+#[cfg(test)]
+mod tests {
+    #![expect(clippy::unwrap_used, reason = "a failed test should stop")]
+
+    use candle_core::{Device, Var};
+
+    use super::*;
+
+    #[test]
+    fn balance_moves_gradients_between_the_two_and_leaves_the_value() {
+        let var = |numbers: [f32; 2]| Var::new(&[[numbers]], &Device::Cpu).unwrap();
+        let (q, p) = (var([0.3, -0.7]), var([-0.2, 0.4]));
+        let gaussian = |mean: &Var| DiagGaussian {
+            mean: mean.as_tensor().clone(),
+            log_var: mean.affine(0.5, 0.1).unwrap(),
+        };
+        let of = |balance: f64| {
+            let kl = balanced(&gaussian(&q), &gaussian(&p), balance).unwrap();
+            let kl = kl.sum_all().unwrap();
+            let gradients = kl.backward().unwrap();
+            let gradient = |var: &Var| -> Vec<f32> {
+                let own = gradients.get(var).unwrap();
+                own.flatten_all().unwrap().to_vec1().unwrap()
+            };
+            (kl.to_scalar::<f32>().unwrap(), gradient(&q), gradient(&p))
+        };
+        let (plain, balanced) = (of(0.5), of(0.8));
+        assert!(
+            (plain.0 - balanced.0).abs() < 1e-5,
+            "{plain:?} {balanced:?}"
+        );
+        for i in 0..2 {
+            assert!((0.4 * plain.1[i] - balanced.1[i]).abs() < 1e-5);
+            assert!((1.6 * plain.2[i] - balanced.2[i]).abs() < 1e-5);
+        }
+    }
 }

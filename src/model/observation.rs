@@ -51,6 +51,19 @@ pub enum Unsuited {
         /// In the episode.
         found_secs: f64,
     },
+    /// A channel has values that are no numbers.
+    #[error(
+        "channel `{channel}` of episode `{episode}` has values that are not finite numbers, which model `{model}` cannot \
+         be shown; switch to a model without that sensor, or record the episode again"
+    )]
+    NotFinite {
+        /// The channel.
+        channel: String,
+        /// The model's name.
+        model: String,
+        /// The episode's name.
+        episode: String,
+    },
     /// A channel is far outside of what the model has seen.
     #[error(
         "channel `{channel}` of episode `{episode}` lies {times:.0} times model `{model}`'s scale from its mean: other \
@@ -103,12 +116,19 @@ pub fn suits(config: &Config, episode: &Episode) -> Result<(), Unsuited> {
                 .map(|x| ((x - mean) / scale).powi(2))
                 .sum::<f32>();
             let times = (squares * 6.0 / data.len() as f32).sqrt();
-            if times.is_nan() || times > SCALE_TOLERANCE {
-                let (model, episode) = (config.name.clone(), episode.meta.id.clone());
+            let (model, episode) = (&config.name, &episode.meta.id);
+            if !times.is_finite() {
+                return Err(Unsuited::NotFinite {
+                    channel: channel.clone(),
+                    model: model.clone(),
+                    episode: episode.clone(),
+                });
+            }
+            if times > SCALE_TOLERANCE {
                 return Err(Unsuited::Scaling {
                     channel: channel.clone(),
-                    model,
-                    episode,
+                    model: model.clone(),
+                    episode: episode.clone(),
                     times,
                 });
             }

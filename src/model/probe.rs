@@ -17,7 +17,7 @@ use std::path::Path;
 use candle_core::{DType, Device, Tensor};
 use nalgebra::{Matrix2, SymmetricEigen};
 
-use super::checkpoint::{CheckpointError, first_line, read_tensors, write_tensors};
+use super::checkpoint::{CheckpointError, first_line, parse_tensors, write_tensors};
 use super::trace::GaussianTrace;
 
 /// A linear probe from the latent to x and y.
@@ -169,9 +169,9 @@ impl Probe {
         write_tensors(path, tensors, None)
     }
 
-    /// Reads what [`Self::write`] wrote, for a model of `latent` dimensions.
-    pub fn read(path: &Path, latent: usize) -> Result<Self, CheckpointError> {
-        let tensors = read_tensors(path)?;
+    /// Takes what [`Self::write`] wrote to `path`, for a model of `latent` dimensions.
+    pub fn parse(path: &Path, bytes: &[u8], latent: usize) -> Result<Self, CheckpointError> {
+        let tensors = parse_tensors(path, bytes)?;
         let numbers = |name: &str, len: usize| numbers(&tensors, path, name, len);
         let weights = numbers("linear.weight", 2 * latent)?;
         let bias = numbers("linear.bias", 2)?;

@@ -44,7 +44,7 @@ pub struct Draws {
     pub segment: Option<usize>,
 }
 
-/// A generator for one purpose and one number: no draw depends on another.
+/// A generator for one purpose and one number: what an update draws depends on no other update.
 fn generator(seed: u64, purpose: u64, number: u64) -> ChaCha8Rng {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     rng.set_stream(purpose << 56 | number);

@@ -12,11 +12,11 @@ use crate::lock::lock;
 /// `(samples, inputs)` and `(parameters)` to `(samples, outputs)`.
 pub struct Apply {
     /// The layers.
-    pub chain: Arc<Chain>,
+    chain: Arc<Chain>,
     /// Whether the gradient of the input is wanted: data needs none.
-    pub input_gradient: bool,
+    input_gradient: bool,
     /// Whether the activations are kept for a backward pass.
-    pub train: bool,
+    train: bool,
     kept: Mutex<Vec<f32>>,
 }
 

@@ -144,7 +144,7 @@ impl Chain {
         at.map_or_else(|| vec![0.0; len], |at| pool.swap_remove(at))
     }
 
-    /// Gives a buffer back; the oldest goes where there are too many.
+    /// Gives a buffer back; one goes where there are too many.
     pub(super) fn give(&self, buffer: Vec<f32>) {
         let mut pool = lock(&self.buffers);
         if pool.len() >= POOL {
