@@ -15,6 +15,7 @@ mod chunk;
 mod collect;
 mod dataset;
 mod error;
+mod folder;
 mod hash;
 mod image;
 mod index;

@@ -1,5 +1,7 @@
 //! A dataset: one file or a folder of them, opened by their summaries, read one episode at a time.
 
+mod told;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -7,6 +9,7 @@ use super::align::align_on;
 use super::block_cache::BlockCache;
 use super::collect::Stream;
 use super::error::DataError;
+use super::folder;
 use super::hash::Fnv;
 use super::mcap_file::{McapFile, Raw};
 use super::report::{FileReport, LeftOut, TopicReport};
@@ -45,13 +48,19 @@ impl Dataset {
     /// Like [`Dataset::open`], with other topics for some roles than `dataset.toml` or the format say.
     ///
     /// # Errors
-    /// Those of [`Dataset::open`], and a role that is named twice or a topic with two roles.
+    /// Those of [`Dataset::open`], a role that is named twice, a topic with two roles or that no file has as such.
     pub fn open_with(path: &Path, named: &[(Role, String)]) -> Result<Self, DataError> {
         let dataset = Self::inspect(path, named)?;
         if dataset.metas.is_empty() {
             return Err(dataset.why_empty());
         }
-        Ok(dataset)
+        match dataset.unread(named).into_iter().next() {
+            Some(what) => Err(DataError::NoSuchTopic {
+                path: dataset.path,
+                what,
+            }),
+            None => Ok(dataset),
+        }
     }
 
     /// Like [`Dataset::open_with`], for looking at what is there: no episode at all is no error.
@@ -61,7 +70,7 @@ impl Dataset {
     pub fn inspect(path: &Path, named: &[(Role, String)]) -> Result<Self, DataError> {
         let is_folder = fs::metadata(path).map_err(DataError::io(path))?.is_dir();
         let (folder, paths) = if is_folder {
-            (path, mcap_files(path)?)
+            (path, folder::recordings(path)?)
         } else {
             (path.parent().unwrap_or(path), vec![path.to_owned()])
         };
@@ -182,13 +191,22 @@ impl Dataset {
         file.recording(meta, None, &self.cache)
     }
 
+    /// The same with frames in the layout's size: those of a camera may be a hundred times larger.
+    ///
+    /// # Errors
+    /// Those of [`Dataset::recording`].
+    pub fn recording_as(&self, index: usize, layout: Layout) -> Result<Recording, DataError> {
+        let (file, meta) = self.episode(index)?;
+        file.recording(meta, Some(layout.frame_size), &self.cache)
+    }
+
     /// Reads episode `index` and lays it out on its steps.
     ///
     /// # Errors
     /// Those of [`Dataset::recording`], and fewer than two images.
     pub fn episode_aligned(&self, index: usize, layout: Layout) -> Result<Episode, DataError> {
-        let (file, meta) = self.episode(index)?;
-        let recording = file.recording(meta, Some(layout.frame_size), &self.cache)?;
+        let (file, _) = self.episode(index)?;
+        let recording = self.recording_as(index, layout)?;
         align_on(&recording, layout, &self.topics).map_err(|error| match error {
             DataError::TooFewImages { place, images } => DataError::TooFewImages {
                 place: format!("{}: {place}", file.path.display()),
@@ -329,23 +347,4 @@ impl EpisodeSource for Dataset {
         self.episode_aligned(index, layout)
             .map_err(|error| SourceError(error.to_string()))
     }
-}
-
-/// The `.mcap` files of a folder, by name.
-fn mcap_files(folder: &Path) -> Result<Vec<PathBuf>, DataError> {
-    let mut paths = Vec::new();
-    for entry in fs::read_dir(folder).map_err(DataError::io(folder))? {
-        let path = entry.map_err(DataError::io(folder))?.path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "mcap")
-        {
-            paths.push(path);
-        }
-    }
-    if paths.is_empty() {
-        return Err(DataError::EmptyFolder(folder.to_owned()));
-    }
-    paths.sort();
-    Ok(paths)
 }

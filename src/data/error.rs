@@ -17,8 +17,13 @@ pub enum DataError {
         cause: io::Error,
     },
     /// A folder without recordings.
-    #[error("{}: no .mcap file in this folder; name a file, or a folder that holds some", .0.display())]
-    EmptyFolder(PathBuf),
+    #[error("{}: no .mcap file in this folder{found}; name a file, or a folder that holds some", path.display())]
+    EmptyFolder {
+        /// The folder.
+        path: PathBuf,
+        /// What there is of other recordings, and what to do about them.
+        found: String,
+    },
     /// Some other kind of file.
     #[error("{}: {what}", path.display())]
     NotMcap {
@@ -90,6 +95,14 @@ pub enum DataError {
     /// Topics named by the caller that cannot be used.
     #[error("--topic: {0}; give each role one topic, and each topic one role")]
     Named(String),
+    /// A topic named by the caller that no recording can be read from.
+    #[error("{}: --topic {what}", path.display())]
+    NoSuchTopic {
+        /// The file or folder.
+        path: PathBuf,
+        /// The role and the topic, why it cannot be read, and which could.
+        what: String,
+    },
     /// A recording that cannot be written.
     #[error("{}: episode {episode}: {what}", path.display())]
     Unwritable {

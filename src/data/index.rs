@@ -69,8 +69,8 @@ pub(super) struct Index {
     pub(super) episodes: Vec<EpisodeMeta>,
     /// Whether it comes from a pass over the records, not from a summary.
     pub(super) scanned: bool,
-    /// Whether the file ends in the middle.
-    pub(super) cut: bool,
+    /// Where the file ends in the middle, in words; none for a whole one.
+    pub(super) cut: Option<String>,
     /// What is worth telling about how it was opened.
     pub(super) notes: Vec<String>,
     /// The data hash, 16 hexadecimal digits.

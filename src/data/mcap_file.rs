@@ -96,7 +96,9 @@ impl McapFile {
                     .into_owned(),
                 nanos(first),
             ),
-            Some(end) if self.index.cut && end < nanos(last) => ("unfinished".to_owned(), end + 1),
+            Some(end) if self.index.cut.is_some() && end < nanos(last) => {
+                ("unfinished".to_owned(), end + 1)
+            }
             Some(_) => return metas,
         };
         metas.push(EpisodeMeta {
@@ -115,7 +117,11 @@ impl McapFile {
         };
         self.episodes().iter().fold(0.0, |sum, meta| {
             let (start, end) = log_range(meta);
-            let end = if self.index.cut { end.min(last) } else { end };
+            let end = if self.index.cut.is_some() {
+                end.min(last)
+            } else {
+                end
+            };
             sum + end.saturating_sub(start) as f64 * 1e-9
         })
     }
@@ -342,6 +348,8 @@ fn what_it_is(start: &[u8]) -> &'static str {
         "this is a ROS 1 bag; convert it with rosbags-convert"
     } else if start.starts_with(b"SQLite format 3") {
         "this is a rosbag2 SQLite file; convert it with `ros2 bag convert` to MCAP"
+    } else if start.starts_with(&[0x28, 0xb5, 0x2f, 0xfd]) {
+        "this is a file that Zstandard has packed, as rosbag2 does by file; unpack it with `zstd -d`"
     } else {
         "this is not an MCAP file (its first bytes are not MCAP's); name an .mcap recording"
     }

@@ -66,6 +66,8 @@ pub(super) fn read(file: &mut File, length: u64, why: &str) -> std::io::Result<I
             reader.read_exact(&mut body[HEAD..])?;
             scan.record(offset, opcode, &body);
         } else {
+            // What is passed over stands between two runs of messages, and may be larger than any of them.
+            scan.close_run();
             if wanted {
                 let note = format!("the record at byte {offset} has {size} bytes: left out");
                 scan.index.notes.push(note);
@@ -153,11 +155,12 @@ impl Scan<'_> {
         let secs = self.index.log_times.map_or(0.0, |(first, last)| {
             last.saturating_sub(first) as f64 * 1e-9
         });
-        self.index.cut = true;
-        self.index.notes.push(format!(
+        let cut = format!(
             "cut off at byte {offset} of {}: {messages} messages over {secs:.3} s stand before it",
             self.index.bytes
-        ));
+        );
+        self.index.notes.push(cut.clone());
+        self.index.cut = Some(cut);
     }
 }
 

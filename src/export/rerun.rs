@@ -32,7 +32,7 @@ use super::output::Output;
 use super::step::Step;
 use super::{ExportError, Run, Sink};
 use crate::data::Dataset;
-use crate::episode::Recording as Sensed;
+use crate::episode::{Layout, Recording as Sensed};
 use crate::modality::Expert;
 use crate::session::snapshot::Snapshot;
 
@@ -67,7 +67,9 @@ impl Sink for Recording {
         let Some(first) = run.models.iter().flatten().next() else {
             return Ok(());
         };
-        let sensed = self.dataset.recording(first.episode_index)?;
+        let sensed = self
+            .dataset
+            .recording_as(first.episode_index, Layout::default())?;
         let refused = |error: RecordingStreamError| self.writer.failed(error);
         let crc = crc32fast::hash(identity(run, first.episode_index).as_bytes());
         // An id of one's own turns the properties off, unless they are asked for after it.

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use poescope::data::{DataError, Dataset};
 use poescope::episode::{EpisodeSource, Layout};
+use poescope::model::observation::suits;
 
 use crate::data::{recordings, sample};
 
@@ -54,6 +55,11 @@ fn a_cut_file_opens_up_to_the_cut() {
     assert!(
         notes.contains("cut off at byte") && notes.contains("1356 messages"),
         "{notes}"
+    );
+    let warnings = dataset.warnings();
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("cut.mcap: cut off at byte"),
+        "{warnings:?}"
     );
     let whole = recordings(&sample());
     assert_eq!(dataset.recording(0).unwrap(), whole[0]);
@@ -155,4 +161,55 @@ fn what_is_no_recording_is_named() {
     let dataset = Dataset::open(folder.path()).unwrap();
     assert_eq!(dataset.metas().len(), 2);
     assert_eq!(dataset.left_out().len(), 1);
+}
+
+#[test]
+fn a_channel_that_is_no_number_is_named_as_such() {
+    let dataset = Dataset::open(&sample()).unwrap();
+    let config = crate::common::three_experts();
+    let mut episode = dataset.episode_aligned(0, config.layout()).unwrap();
+    assert!(suits(&config, &episode).is_ok());
+    episode.haptic.as_mut().unwrap()[6] = f32::NAN;
+    let said = suits(&config, &episode).unwrap_err().to_string();
+    assert!(
+        said.contains("channel `fx`") && said.contains("not finite"),
+        "{said}"
+    );
+    episode.haptic.as_mut().unwrap().fill(1e6);
+    let said = suits(&config, &episode).unwrap_err().to_string();
+    assert!(said.contains("other units"), "{said}");
+}
+
+/// A file without chunks and without its end, in which something large stands between two runs of messages.
+#[test]
+fn what_is_passed_over_belongs_to_no_run_of_messages() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("attached.mcap");
+    let mut writer = mcap::WriteOptions::new()
+        .use_chunks(false)
+        .create(fs::File::create(&path).unwrap())
+        .unwrap();
+    let bytes = fs::read(sample()).unwrap();
+    let messages: Vec<_> = mcap::MessageStream::new(&bytes).unwrap().collect();
+    for (i, message) in messages.iter().enumerate() {
+        if i == messages.len() / 2 {
+            writer
+                .attach(&mcap::Attachment {
+                    log_time: 0,
+                    create_time: 0,
+                    name: "map.pgm".to_owned(),
+                    media_type: "image/x-portable-graymap".to_owned(),
+                    data: vec![0; 140 << 20].into(),
+                })
+                .unwrap();
+        }
+        writer.write(message.as_ref().unwrap()).unwrap();
+    }
+    writer.finish().unwrap();
+    let file = fs::File::options().write(true).open(&path).unwrap();
+    file.set_len(file.metadata().unwrap().len() - 40).unwrap();
+    let dataset = Dataset::open(&path).unwrap();
+    let frames = dataset.recording(0).unwrap().frames.len();
+    let recorded: usize = recordings(&sample()).iter().map(|r| r.frames.len()).sum();
+    assert_eq!(frames, recorded);
 }

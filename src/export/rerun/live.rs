@@ -120,7 +120,7 @@ impl Live {
         let model = self.models.get(snapshot.model);
         let layout = model.map(|model| model.layout()).unwrap_or_default();
         let episode = Arc::new(self.dataset.load(snapshot.episode_index, layout)?);
-        let sensed = self.dataset.recording(snapshot.episode_index)?;
+        let sensed = self.dataset.recording_as(snapshot.episode_index, layout)?;
         let source = Source {
             episodes: self.dataset.as_ref(),
             models: &self.models,
