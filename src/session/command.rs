@@ -70,6 +70,8 @@ pub enum Command {
     SortBy(Column),
     /// List only episodes whose name or split contains this.
     Filter(String),
+    /// Tell what is odd about the recording: the next of what there is.
+    Oddity,
     /// Go so many events on: contact onsets and marks.
     Event(i64),
     /// Mark the step under the cursor, or take its mark away.

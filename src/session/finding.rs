@@ -27,7 +27,11 @@ impl Session {
                 Order::Gain => {
                     "gain is over a model that sees frames alone: load one, with --model".to_owned()
                 }
-                order => format!("no episode can be ranked by {}", order.name()),
+                order => {
+                    let fault = self.table.view().first_fault();
+                    let why = fault.map_or_else(String::new, |why| format!(": {why}"));
+                    format!("no episode can be ranked by {}{why}", order.name())
+                }
             });
             return;
         };
@@ -50,6 +54,37 @@ impl Session {
             view.queue.len(),
             order.name(),
             order.spelt(failure.value),
+        ));
+    }
+
+    /// Lists only some episodes; says how many, since the list may be closed.
+    pub(super) fn filter(&mut self, text: String) {
+        self.table.filter(text);
+        let view = self.table.view();
+        let (shown, total) = (view.shown.len(), view.rows.len());
+        let told = if view.filter.is_empty() {
+            format!("all {total} episodes are listed")
+        } else {
+            let filter = &view.filter;
+            format!("{shown} of {total} episodes have {filter:?} in name or split; E lists them")
+        };
+        self.inform(told);
+    }
+
+    /// The next oddity of the recording, after the last the first again.
+    pub(super) fn tell_oddity(&mut self) {
+        let flags = self.opened().map(|opened| opened.view.flags.clone());
+        let flags = flags.unwrap_or_default();
+        let Some(at) = self.oddity.checked_rem(flags.len()) else {
+            self.inform("nothing is odd about this recording".to_owned());
+            return;
+        };
+        self.oddity = at + 1;
+        self.inform(format!(
+            "recording ({} of {}): {}",
+            at + 1,
+            flags.len(),
+            flags[at]
         ));
     }
 

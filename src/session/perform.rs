@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::Session;
 use super::command::{Command, Looping, Scope};
 use super::fusing::{self, Place, Refusal};
 use super::settings::Settings;
 use super::snapshot::ModelInfo;
 use super::switches::{Reach, Switches};
 use super::worker::Target;
+use super::{Pending, Session, is_of_a_step};
 use crate::measure::protocol::Protocol;
 use crate::modality::Expert;
 
@@ -139,7 +139,8 @@ impl Session {
             Command::CycleFailureOrder => self.rank_by(self.table.view().order.next()),
             Command::RankBy(order) => self.rank_by(order),
             Command::SortBy(column) => self.table.sort_by(column),
-            Command::Filter(text) => self.table.filter(text),
+            Command::Filter(text) => self.filter(text),
+            Command::Oddity => self.tell_oddity(),
             Command::Event(by) => self.go_events(by, steps),
             Command::ToggleMark => self.toggle_mark(),
             Command::Select => self.select(),
@@ -173,8 +174,21 @@ impl Session {
 
     /// Goes to another model or episode; switches keep their experts by name.
     pub(super) fn go_to(&mut self, target: Target) {
+        if target.episode != self.target.episode {
+            self.forget_steps();
+        }
         self.target = target;
         self.repair();
+    }
+
+    /// Of what waits for an episode that is left unseen, steps and marks would land in another.
+    fn forget_steps(&mut self) {
+        self.pending.retain(|pending| match pending {
+            Pending::Seek(_) => false,
+            Pending::Command(command) => !is_of_a_step(command),
+            // Its settings are of every episode; what it says of steps it keeps to its own.
+            Pending::Restoration(_) => true,
+        });
     }
 
     fn switch(

@@ -8,6 +8,7 @@ use super::settings::Settings;
 use super::snapshot::ModelInfo;
 use super::state::State;
 use super::{Pending, Session};
+use crate::modality::Expert;
 
 /// A state whose model and episode have been found, and what was wrong with it so far.
 pub(super) struct Restoration {
@@ -70,7 +71,11 @@ impl Session {
             Ok("state restored".to_owned())
         });
         self.repair();
-        match state.step {
+        let key = self.episode_keys.get(self.target.episode);
+        // What was asked for while its episode was read, and is of another that was gone to meanwhile.
+        let left = |id: &String| Some(id) != key && self.episode_keys.contains(id);
+        let is_left = state.episode.as_ref().is_some_and(left);
+        match state.step.filter(|_| !is_left) {
             Some(step) if step <= steps => self.playback.seek(step - 1, steps),
             Some(step) => complaints.push(format!("step: {step} is outside 1 to {steps}")),
             None => {}
@@ -84,7 +89,9 @@ impl Session {
         if self.table.view().order != state.order {
             self.table.rank_by(state.order);
         }
-        self.take_steps(&state, steps, &mut complaints);
+        if !is_left {
+            self.take_steps(&state, steps, &mut complaints);
+        }
         let keys: Vec<&str> = state.unknown.iter().map(|(key, _)| key.as_str()).collect();
         let kept = format!("kept without a meaning here: {}", keys.join(", "));
         let is_known = keys.is_empty();
@@ -136,6 +143,16 @@ impl Session {
 
     fn take_switches(&mut self, state: &State, complaints: &mut Vec<String>) {
         let switches = &state.switches;
+        let of_none = |expert: &Expert| {
+            let has = |model: &Arc<ModelInfo>| model.all_experts().contains(expert);
+            !switches.runs(*expert).is_empty() && !self.models.iter().any(has)
+        };
+        complaints.extend(
+            Expert::ALL
+                .into_iter()
+                .find(of_none)
+                .map(|expert| format!("alpha: no model here has the expert {}", expert.name())),
+        );
         let silent = self
             .model()
             .filter(|model| model.has_product())

@@ -91,11 +91,11 @@ impl State {
         last.map(|last| first.min(last)..=first.max(last))
     }
 
-    /// Reads a state string. Each complaint names the key it is about; all other keys count.
+    /// Reads a state string; without `v` it is of this version. Each complaint names the key it is about; all other keys
+    /// count.
     pub fn parse(text: &str) -> (Self, Vec<String>) {
         let mut state = Self::default();
         let mut complaints = Vec::new();
-        let mut has_version = false;
         for part in text
             .trim()
             .split(';')
@@ -106,13 +106,9 @@ impl State {
                 continue;
             };
             let value = unescape(raw);
-            has_version |= key == "v";
             if let Err(why) = state.take(key, &value) {
                 complaints.push(format!("{key}: {why}"));
             }
-        }
-        if !has_version {
-            complaints.push(format!("v: missing, read as version {VERSION}"));
         }
         // The seed may stand before or after what it is for.
         for corruption in state.corruptions.values_mut() {

@@ -229,7 +229,7 @@ impl App {
                 self.to_copy = Some(snapshot.state.clone());
                 self.session.say(Message {
                     error: false,
-                    text: format!("copied: {}", snapshot.state),
+                    text: format!("sent to the clipboard: {}", snapshot.state),
                 });
             }
             FaceCommand::Export => {

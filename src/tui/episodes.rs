@@ -199,9 +199,16 @@ fn foot(buf: &mut Buffer, pane: Rect, table: &TableView) {
         || format!("{} in the queue", table.queue.len()),
         |place| format!("{} of {}", place + 1, table.queue.len()),
     );
-    let order = format!("failures by {}: {place}", table.order.name());
-    let at = text(buf, pane, at + 2, row, &order, Style::new());
     let keys = "⏎ open  / filter  < > sort  o order";
+    let order = format!("failures by {}: {place}", table.order.name());
+    let has_room = at + 2 + width(&order) + 2 + width(keys) <= pane.width;
+    // The keys stand nowhere else.
+    let order = if has_room {
+        &order
+    } else {
+        &order["failures ".len()..]
+    };
+    let at = text(buf, pane, at + 2, row, order, Style::new());
     if at + 2 + width(keys) <= pane.width {
         right(buf, pane, pane.width, row, keys, dim());
     }
@@ -225,14 +232,10 @@ fn episode(
     let Some(score) = &row.score else {
         return;
     };
-    right(
-        buf,
-        line,
-        places.spark - 2,
-        0,
-        &score.steps.to_string(),
-        Style::new(),
-    );
+    if score.steps > 0 {
+        let steps = score.steps.to_string();
+        right(buf, line, places.spark - 2, 0, &steps, Style::new());
+    }
     if let Some(fault) = &score.fault {
         text(buf, line, places.spark, 0, fault, face.depth.ink(WARNING));
         return;

@@ -41,7 +41,8 @@ pub fn draw(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             let of = format!("{}/{}", snapshot.model + 1, snapshot.models.len());
             at = text(buf, pane, at + 1, 0, &of, dim());
         }
-        if let Some(update) = model.update {
+        // Where room is short the episode's name says more.
+        if let Some(update) = model.update.filter(|_| pane.width >= 96) {
             at = text(buf, pane, at + 2, 0, &format!("update {update}"), dim());
         }
         let source = 2 + width(&model.source);
@@ -144,7 +145,10 @@ pub fn message(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
             "recording: ".to_owned()
         };
         let at = text(buf, pane, 0, 0, &which, dim());
-        text(buf, pane, at, 0, flag, Style::new());
+        let at = text(buf, pane, at, 0, flag, Style::new());
+        if count > 1 {
+            text(buf, pane, at, 0, ", :recording for the next", dim());
+        }
     } else {
         hints(buf, pane);
     }

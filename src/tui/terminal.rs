@@ -24,7 +24,7 @@ use std::time::Instant;
 use crossterm::terminal::{size, window_size};
 use ratatui::layout::Size;
 use ratatui_image::picker::ProtocolType;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGWINCH};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGWINCH};
 use signal_hook::iterator::Signals;
 
 use super::app::{App, Flow};
@@ -66,6 +66,8 @@ enum Wake {
     Input(Input),
     /// The screen has another size.
     Resized,
+    /// To be stopped, and to go on later where it was: Ctrl-Z.
+    Suspend,
     Signal(i32),
     /// Something was computed or encoded.
     Done,
@@ -76,7 +78,7 @@ enum Wake {
 /// Runs the face until the user quits or a signal comes. The terminal is given back in every case.
 pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
     // Before the terminal is taken over: a signal must never find it taken and nobody listening.
-    let signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGWINCH])?;
+    let signals = Signals::new([SIGTERM, SIGHUP, SIGINT, SIGWINCH, SIGTSTP])?;
     let guard = Guard::enter()?;
     let sixteen = app.face.depth == Depth::Sixteen;
     let mut screen = Screen::whole(Output::new(stdout(), sixteen))?;
@@ -115,20 +117,37 @@ pub fn run(app: &mut App, images: Images) -> io::Result<Ended> {
         .name("poescope-input".to_owned())
         .spawn(move || read_input(&for_input))?;
 
-    let ended = drive(app, &mut screen, &events, |face, answer| {
-        let graphics = asking.as_mut().and_then(|asking| asking.take(answer));
-        graphics.map_or(Ok(false), |graphics| {
-            start_images(face, graphics, &sender).map(|()| true)
-        })
-    });
+    let ended = loop {
+        let ended = drive(app, &mut screen, &events, |face, answer| {
+            let graphics = asking.as_mut().and_then(|asking| asking.take(answer));
+            graphics.map_or(Ok(false), |graphics| {
+                start_images(face, graphics, &sender).map(|()| true)
+            })
+        });
+        forget_images(app, &mut screen)?;
+        match ended {
+            Ok(Some(ended)) => break Ok(ended),
+            Err(error) => break Err(error),
+            Ok(None) => {
+                guard::suspend()?;
+                screen.clear()?;
+                app.resize(screen.size()?);
+            }
+        }
+    };
     handle.close();
-    if let Some(mut pixels) = app.face.pixels.take() {
+    drop(guard);
+    ended
+}
+
+/// What the terminal holds of images would stand over whatever it shows next.
+fn forget_images<W: Write>(app: &mut App, screen: &mut Screen<W>) -> io::Result<()> {
+    if let Some(pixels) = &mut app.face.pixels {
         pixels.forget();
         screen.write(&pixels.to_send())?;
         screen.flush()?;
     }
-    drop(guard);
-    ended
+    Ok(())
 }
 
 /// Has images drawn this way from now on.
@@ -162,6 +181,7 @@ fn read_signals(mut signals: Signals, sender: &SyncSender<Wake>) {
     for signal in signals.forever() {
         let wake = match signal {
             SIGWINCH => Wake::Resized,
+            SIGTSTP => Wake::Suspend,
             signal => Wake::Signal(signal),
         };
         if sender.send(wake).is_err() {
@@ -195,20 +215,27 @@ fn pass_on(mut terminal: impl Read, sender: &SyncSender<Wake>) -> io::Error {
             Err(error) => return error,
         };
         for input in decoder.push(&bytes[..read], read == bytes.len()) {
-            if sender.send(Wake::Input(input)).is_err() {
+            let is_suspend = matches!(&input, Input::Key(key) if key.name() == "<c-z>");
+            let wake = if is_suspend {
+                Wake::Suspend
+            } else {
+                Wake::Input(input)
+            };
+            if sender.send(wake).is_err() {
                 return io::ErrorKind::BrokenPipe.into();
             }
         }
     }
 }
 
-/// The loop. `answered` says whether an answer of the terminal changes what is drawn.
+/// The loop, until it ends; none where it is to go on once the process was stopped. `answered` says whether an answer of
+/// the terminal changes what is drawn.
 fn drive<W: Write>(
     app: &mut App,
     screen: &mut Screen<W>,
     events: &Receiver<Wake>,
     mut answered: impl FnMut(&mut Face, Answer) -> io::Result<bool>,
-) -> io::Result<Ended> {
+) -> io::Result<Option<Ended>> {
     let mut changed = true;
     let mut before = Instant::now();
     let mut tick = |app: &mut App| {
@@ -228,11 +255,11 @@ fn drive<W: Write>(
             Some(soon) => match events.recv_timeout(soon) {
                 Ok(wake) => Some(wake),
                 Err(RecvTimeoutError::Timeout) => None,
-                Err(RecvTimeoutError::Disconnected) => return Ok(Ended::Quit),
+                Err(RecvTimeoutError::Disconnected) => return Ok(Some(Ended::Quit)),
             },
             None => match events.recv() {
                 Ok(wake) => Some(wake),
-                Err(_) => return Ok(Ended::Quit),
+                Err(_) => return Ok(Some(Ended::Quit)),
             },
         };
         // Before what the keys begin: the wait for them is no time that it has played.
@@ -244,7 +271,7 @@ fn drive<W: Write>(
                 Wake::Input(Input::Key(key)) => {
                     changed = true;
                     if app.press(&key) == Flow::Quit {
-                        return Ok(Ended::Quit);
+                        return Ok(Some(Ended::Quit));
                     }
                 }
                 Wake::Input(Input::Pointer(pointer, at)) => {
@@ -260,7 +287,8 @@ fn drive<W: Write>(
                         pixels.resized(cell_size());
                     }
                 }
-                Wake::Signal(signal) => return Ok(Ended::Signal(signal)),
+                Wake::Suspend => return Ok(None),
+                Wake::Signal(signal) => return Ok(Some(Ended::Signal(signal))),
                 Wake::Closed(error) => return Err(error),
                 Wake::Done => {}
             }

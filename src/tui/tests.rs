@@ -249,7 +249,10 @@ fn the_state_string_goes_to_the_clipboard() {
     let shown = to_text(&screen(&app.session.snapshot(), &app.face, SMALL), false);
     // However long it is, it can be read: a terminal may not have taken it.
     let lines: String = shown.lines().map(str::trim).collect();
-    assert!(lines.ends_with(&format!("copied: {state}")), "{shown}");
+    assert!(
+        lines.ends_with(&format!("sent to the clipboard: {state}")),
+        "{shown}"
+    );
 }
 
 #[test]

@@ -174,9 +174,12 @@ impl Hub {
 
     /// Lets a viewer go.
     pub fn leave(&self, viewer: &Arc<Viewer>) {
-        self.lock()
-            .viewers
-            .retain(|other| !Arc::ptr_eq(other, viewer));
+        let mut state = self.lock();
+        state.viewers.retain(|other| !Arc::ptr_eq(other, viewer));
+        // What nobody looks at is not computed.
+        if state.viewers.is_empty() && self.spread.swap(false, Ordering::Relaxed) {
+            self.attached.want(Wants::default());
+        }
     }
 
     /// Ends every connection.

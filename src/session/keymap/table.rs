@@ -167,19 +167,19 @@ pub(super) static BINDINGS: &[Binding] = &[
         &["d"],
         Face(FaceCommand::Difference),
         FINDING,
-        "what two models differ by",
+        "difference: two models, or to the truth",
     ),
     bind(
         &["b"],
         Face(FaceCommand::Blink),
         FINDING,
-        "blink between two models",
+        "blink between the two",
     ),
     bind(
         &["w"],
         Face(FaceCommand::Wipe),
         FINDING,
-        "wipe between two models",
+        "wipe between the two",
     ),
     bind(
         &["{"],

@@ -186,6 +186,14 @@ pub(in crate::session) static VERBS: &[Verb] = &[
         },
     },
     Verb {
+        word: "recording",
+        arguments: "",
+        help: "what is odd about it, one after the other",
+        keys: "",
+        choices: |_| vec![(String::new(), "")],
+        read: |rest, _| session(rest.is_empty().then_some(Command::Oddity)),
+    },
+    Verb {
         word: "help",
         arguments: "",
         help: "the words that can be typed",

@@ -87,6 +87,16 @@ pub struct TableView {
     pub place: Option<usize>,
 }
 
+impl TableView {
+    /// Why the first of the episodes that could not be scored was not, with its name.
+    pub fn first_fault(&self) -> Option<String> {
+        self.rows.iter().find_map(|row| {
+            let fault = row.score.as_ref()?.fault.as_ref()?;
+            Some(format!("{} {fault}", row.id))
+        })
+    }
+}
+
 /// One episode of the table.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EpisodeRow {

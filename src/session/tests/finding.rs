@@ -177,6 +177,10 @@ fn the_board_measures_the_switches_over_the_split() {
     );
     assert!(board.why_not.is_none());
     assert_eq!(board.by_head.len(), board.by_propagation.len());
+    // One belief where the prediction begins, two where the one goes on seeing and the other does not.
+    assert_eq!(board.by_head.len(), board.by_filter.len());
+    assert_eq!(board.by_head.first(), board.by_filter.first());
+    assert_ne!(board.by_head.last(), board.by_filter.last());
     assert_eq!(
         (board.by_head[0].horizon, board.by_head[0].episodes),
         (0, 4)
@@ -202,4 +206,29 @@ fn known_activity_comes_from_all_episodes() {
     assert_eq!(after.active_from, "4 episodes");
     assert_eq!(after.importance_m.len(), 4);
     assert!(after.importance_m[0] > 10.0 * after.importance_m[3].abs());
+}
+
+#[test]
+fn a_filter_says_how_many_it_lets_through() {
+    let mut session = session();
+    let told = run(&mut session, [Filter("_02".to_owned())]);
+    let total = told.table.rows.len();
+    let words = format!("1 of {total} episodes have \"_02\" in name or split; E lists them");
+    assert_eq!(text(&told), words);
+    let all = run(&mut session, [Filter(String::new())]);
+    assert_eq!(text(&all), format!("all {total} episodes are listed"));
+}
+
+#[test]
+fn the_oddities_of_a_recording_are_told_one_after_the_other() {
+    let mut session = session();
+    let flags = run(&mut session, []).episode.unwrap().flags.clone();
+    for told in 0..=flags.len() {
+        let said = run(&mut session, [Oddity]);
+        let expected = match told.checked_rem(flags.len()) {
+            Some(at) => format!("recording ({} of {}): {}", at + 1, flags.len(), flags[at]),
+            None => "nothing is odd about this recording".to_owned(),
+        };
+        assert_eq!(text(&said), expected);
+    }
 }

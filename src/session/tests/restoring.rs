@@ -84,3 +84,28 @@ fn what_does_not_fit_the_episode_is_named() {
     assert!(text_of(&mut session, "compare=nobody").contains("compare: none named"));
     assert!(text_of(&mut session, &format!("compare={name}")).contains("is the model itself"));
 }
+
+#[test]
+fn a_string_without_a_version_is_of_this_one() {
+    let back = run(&mut two(), [Restore("step=3".to_owned())]);
+    assert_eq!((text(&back), back.cursor), ("state restored", 2));
+}
+
+#[test]
+fn an_expert_that_no_model_has_is_told() {
+    let mut session = session_of(vec![Arc::new(FakePredictor::three())]);
+    let told = run(&mut session, [Restore("alpha=joint:0".to_owned())]);
+    assert!(is_refusal(&told), "{}", text(&told));
+    assert_eq!(text(&told), "alpha: no model here has the expert joint");
+    let of_one = run(&mut two(), [Restore("alpha=joint:0.5".to_owned())]);
+    assert!(!is_refusal(&of_one), "{}", text(&of_one));
+}
+
+#[test]
+fn marks_never_reach_an_episode_that_was_gone_to_meanwhile() {
+    let mut session = two();
+    let state = "episode=square_02;step=6;marks=3,7".to_owned();
+    let there = run(&mut session, [Restore(state), Episode(-1)]);
+    assert!(there.state.contains("episode=square_01"), "{}", there.state);
+    assert!(!there.state.contains("marks"), "{}", there.state);
+}

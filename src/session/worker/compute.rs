@@ -116,7 +116,7 @@ impl Worker {
         let steps = opened.steps();
         if !opened.view.missing.is_empty() {
             return Err(Stop::Fault(format!(
-                "{} needs {}, which this recording lacks; pick another model with ( or )",
+                "{} needs {}, which this recording lacks; `poescope info` lists its topics",
                 info.name,
                 opened.view.missing.join(", ")
             )));

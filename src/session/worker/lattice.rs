@@ -1,9 +1,9 @@
 //! Every non-empty set of experts of an episode, filtered as one batch.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::inferred::{Inferred, infer_all};
+use super::lru::Lru;
 use super::opened::Opened;
 use crate::episode::Frame;
 use crate::measure::ellipse::Ellipse;
@@ -14,11 +14,14 @@ use crate::session::predict::{PredictError, Predictor};
 use crate::session::snapshot::ModelInfo;
 use crate::session::snapshot::lattice::{LatticeCell, LatticeView};
 
+/// Steps whose frames are kept: 15 of each for three experts and the prior.
+const FRAMES: usize = 64;
+
 /// The sets of an episode, with the frames of the steps that were looked at.
 #[derive(Debug)]
 pub struct Lattice {
     sets: Vec<Set>,
-    frames: BTreeMap<usize, Vec<Arc<Frame>>>,
+    frames: Lru<usize, Vec<Arc<Frame>>>,
 }
 
 #[derive(Debug)]
@@ -85,7 +88,7 @@ impl Lattice {
             });
         Ok(Some(Self {
             sets: sets.collect(),
-            frames: BTreeMap::new(),
+            frames: Lru::new(FRAMES),
         }))
     }
 
@@ -105,20 +108,14 @@ impl Lattice {
         else {
             return Ok(None);
         };
-        if !self.frames.contains_key(&step) {
+        let frames = &*self.frames.get_or_try_insert(step, || {
             let means = self.sets.iter();
             let latents: Vec<f32> = means
                 .flat_map(|set| set.inferred.posterior(belief).mean.iter().copied())
                 .collect();
             let frames = predictor.decode(&latents)?;
-            self.frames
-                .insert(step, frames.into_iter().map(Arc::new).collect());
-        }
-        let frames = self
-            .frames
-            .get(&step)
-            .map(Vec::as_slice)
-            .unwrap_or_default();
+            Ok::<_, PredictError>(frames.into_iter().map(Arc::new).collect())
+        })?;
         let experts = predictor.info().all_experts();
         let cell = |(i, set): (usize, &Set)| {
             let posterior = set.inferred.posterior(belief);

@@ -60,8 +60,8 @@ impl List {
             // A search leaves matches alone, so the next match is the next row.
             "<down>" | "j" | "n" => self.go(table, 1),
             "<up>" | "k" | "N" => self.go(table, -1),
-            "<pagedown>" | "<s-down>" => self.go(table, 10),
-            "<pageup>" | "<s-up>" => self.go(table, -10),
+            "<pagedown>" | "<s-down>" | "<c-d>" | "<c-f>" => self.go(table, 10),
+            "<pageup>" | "<s-up>" | "<c-u>" | "<c-b>" => self.go(table, -10),
             "<home>" | "g" => self.go(table, isize::MIN),
             "<end>" | "G" => self.go(table, isize::MAX),
             "/" => self.is_typing = true,

@@ -12,6 +12,7 @@ use crossterm::terminal::{
     enable_raw_mode,
 };
 use crossterm::{cursor, style};
+use signal_hook::consts::SIGTSTP;
 
 /// Whether there is a terminal to give back.
 static TAKEN: AtomicBool = AtomicBool::new(false);
@@ -23,16 +24,9 @@ impl Guard {
     /// Takes the terminal over.
     pub fn enter() -> io::Result<Self> {
         tell_panics_on_the_usual_screen(thread::current().id());
-        enable_raw_mode()?;
-        TAKEN.store(true, Ordering::SeqCst);
-        // From here on there is something to give back, also if the next line fails.
+        // Also if it is taken by half only, there is something to give back.
         let guard = Self(());
-        execute!(
-            stdout(),
-            EnterAlternateScreen,
-            EnableMouseCapture,
-            cursor::Hide
-        )?;
+        take_over()?;
         Ok(guard)
     }
 }
@@ -45,6 +39,24 @@ impl Drop for Guard {
             let _ = panic::take_hook();
         }
     }
+}
+
+/// Gives the terminal back, stops the process as Ctrl-Z would, and takes the terminal over again when it goes on.
+pub fn suspend() -> io::Result<()> {
+    give_back();
+    signal_hook::low_level::emulate_default_handler(SIGTSTP)?;
+    take_over()
+}
+
+fn take_over() -> io::Result<()> {
+    enable_raw_mode()?;
+    TAKEN.store(true, Ordering::SeqCst);
+    execute!(
+        stdout(),
+        EnterAlternateScreen,
+        EnableMouseCapture,
+        cursor::Hide
+    )
 }
 
 /// Once only: leaving the other screen a second time would move the cursor over what was printed since. Every step

@@ -8,7 +8,7 @@ use crossterm::terminal::{BeginSynchronizedUpdate, EndSynchronizedUpdate};
 use crossterm::{Command, queue};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
-use ratatui::layout::Size;
+use ratatui::layout::{Rect, Size};
 
 use crate::tui::app::App;
 use crate::tui::draw;
@@ -48,6 +48,13 @@ impl<W: Write> Screen<W> {
     /// Has what is copied also go past tmux, which as it is set by default keeps it to itself.
     pub fn copy_through_tmux(&mut self) {
         self.tmux = true;
+    }
+
+    /// Has all of it drawn anew: others have drawn on it meanwhile. `clear` of the terminal would ask it where the cursor
+    /// is, and wait for an answer that comes among the keys.
+    pub fn clear(&mut self) -> io::Result<()> {
+        let size = self.terminal.size()?;
+        self.terminal.resize(Rect::from(size))
     }
 
     /// Its cells.

@@ -77,7 +77,7 @@ fn five_hundred_held_keys_are_two_or_three_drawings() {
     };
     let mut screen = Screen::fixed(sink, SIZE).unwrap();
     let ended = drive(&mut app, &mut screen, &events, |_, _| Ok(false));
-    assert_eq!(ended.unwrap(), Ended::Signal(SIGTERM));
+    assert_eq!(ended.unwrap(), Some(Ended::Signal(SIGTERM)));
     assert_eq!(app.session.snapshot().cursor, 15);
     assert!(frames(&bytes.lock().unwrap()) <= 4);
 }
@@ -157,4 +157,19 @@ fn keys_typed_before_the_terminal_has_answered_are_kept() {
         .iter()
         .filter(|wake| matches!(wake, Wake::Input(Input::Key(_))));
     assert_eq!(keys.count(), 3);
+}
+
+#[test]
+fn ctrl_z_leaves_the_loop_with_what_came_after_it_still_to_be_read() {
+    let mut app = app();
+    let (sender, events) = sync_channel(8);
+    sender.send(key("right")).unwrap();
+    sender.send(Wake::Suspend).unwrap();
+    sender.send(key("right")).unwrap();
+    sender.send(Wake::Signal(SIGTERM)).unwrap();
+    let mut screen = Screen::fixed(Vec::new(), SIZE).unwrap();
+    let mut go_on = || drive(&mut app, &mut screen, &events, |_, _| Ok(false)).unwrap();
+    assert_eq!(go_on(), None);
+    assert_eq!(go_on(), Some(Ended::Signal(SIGTERM)));
+    assert_eq!(app.session.snapshot().cursor, 2);
 }
