@@ -16,7 +16,7 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use anyhow::Context;
+use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::cli::{Cli, Command};
@@ -30,6 +30,14 @@ fn progress_bar(len: usize, template: &str) -> ProgressBar {
 
 /// Runs what the command line asks for.
 pub fn dispatch(cli: Cli) -> anyhow::Result<()> {
+    if let (None, Some(path)) = (&cli.command, &cli.view.path)
+        && !sample::data(Some(path))?.exists()
+    {
+        bail!(
+            "{}: neither a command nor a dataset that is there; `poescope --help` lists the commands",
+            path.display()
+        );
+    }
     match cli.command.unwrap_or(Command::View(cli.view)) {
         Command::View(args) => view::run(&args),
         Command::Serve(args) => serve::run(args),

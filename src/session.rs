@@ -111,6 +111,8 @@ pub struct Session {
     message: Option<Message>,
     /// How many messages there have been.
     told: u64,
+    /// Which oddity of the recording is told next.
+    oddity: usize,
     generation: u64,
     wanted: Option<Wanted>,
     answer: Option<Answer>,
@@ -189,6 +191,7 @@ impl Session {
             pending: VecDeque::new(),
             message: None,
             told: 0,
+            oddity: 0,
             generation: 0,
             wanted: None,
             answer: None,
@@ -471,6 +474,19 @@ fn goes_elsewhere(command: &Command) -> bool {
             | Command::SelectEpisode(_)
             | Command::SelectModel(_)
             | Command::Restore(_)
+    )
+}
+
+/// Whether a command is about a step of the episode that is shown.
+fn is_of_a_step(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Step(_)
+            | Command::SeekTo(_)
+            | Command::SeekClamped(_)
+            | Command::Event(_)
+            | Command::ToggleMark
+            | Command::Select
     )
 }
 

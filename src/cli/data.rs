@@ -19,11 +19,14 @@ pub struct TopicArgs {
 /// Arguments of `info`.
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// An .mcap file or a folder of them
+    /// Dataset: an .mcap file or a folder of them, or the name of a sample, `pybullet`
     pub path: PathBuf,
     /// Print JSON instead of a table
     #[arg(long)]
     pub json: bool,
+    /// Also read every episode, and say what is odd about it: gaps, values that are no numbers, damage
+    #[arg(long)]
+    pub check: bool,
     /// Where the dataset has its roles.
     #[command(flatten)]
     pub mapping: TopicArgs,

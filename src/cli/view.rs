@@ -16,6 +16,9 @@ const RERUN_VIEWER: &str = "rerun+http://127.0.0.1:9876/proxy";
 #[derive(Clone, Debug, Default, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub struct ViewArgs {
+    /// The same as --data
+    #[arg(value_name = "DATA", conflicts_with = "data")]
+    pub path: Option<PathBuf>,
     /// Dataset: an .mcap file or a folder of them, or the name of a sample, `pybullet` [default: the sample episodes]
     #[arg(long)]
     pub data: Option<PathBuf>,
@@ -82,6 +85,9 @@ pub struct ViewArgs {
 /// Arguments of `serve`.
 #[derive(Clone, Debug, Args)]
 pub struct ServeArgs {
+    /// The same as --data
+    #[arg(value_name = "DATA", conflicts_with = "data")]
+    pub path: Option<PathBuf>,
     /// Address to listen on: beyond this machine (`0.0.0.0`) a token is demanded, which is printed
     #[arg(long, default_value = "127.0.0.1", value_parser = parse_host)]
     pub host: IpAddr,

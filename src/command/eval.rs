@@ -132,9 +132,10 @@ fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
     let Scored {
         contest,
         joined,
-        ground: Ground { scope, .. },
+        ground,
         ..
     } = *scored;
+    let scope = &ground.scope;
     let Joined { indices, all, .. } = joined;
     let Some(summary) = summarise(contest, all, scope)? else {
         if let Some(why) = scope.left_out.first() {
@@ -146,9 +147,10 @@ fn conclude(args: &EvalArgs, scored: &Scored<'_>) -> anyhow::Result<()> {
             );
         }
         bail!(
-            "{}: no episode of split `{}`; choose another --split",
+            "{}: no episode of split `{}`{}; choose another --split",
             scope.data,
-            scope.split
+            scope.split,
+            ground.has()
         );
     };
     let text = markdown::markdown(&summary);

@@ -25,9 +25,16 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
             args.out.display()
         );
     };
+    let of_view = format == ExportFormat::Png && args.figure == Figure::View;
+    if args.keys.is_some() && !of_view {
+        bail!("--keys: only a PNG of --figure view has keys to press");
+    }
+    if format != ExportFormat::Png && (args.every.is_some() || args.zoom.is_some()) {
+        bail!("--every and --zoom: only a PNG has them; choose steps with --steps");
+    }
     let state = args.state.as_deref().map(read).transpose()?;
     let stop = super::stop_on_signals()?;
-    if format == ExportFormat::Png && args.figure == Figure::View {
+    if of_view {
         return view::run(args, &stop);
     }
     let folders = open::folders(&args.model, args.data.as_ref())?;
@@ -55,10 +62,16 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         episodes: dataset.as_ref(),
         models: &models,
     };
-    drive(&mut session, source, &plan, sink.as_mut(), &mut progress)?;
+    let blind = drive(&mut session, source, &plan, sink.as_mut(), &mut progress)?;
     progress.finish();
     sink.finish()?;
-    Ok(())
+    match blind {
+        None => Ok(()),
+        Some(why) => bail!(
+            "{}: written, but without any belief: {why}",
+            args.out.display()
+        ),
+    }
 }
 
 /// Reads a state string; what it says wrongly is refused, what means nothing here is told.

@@ -5,10 +5,10 @@ mod table;
 use anyhow::Context;
 use serde::Serialize;
 
-use super::say;
+use super::{sample, say};
 use crate::cli::InfoArgs;
 use crate::data::{Dataset, FileReport, LeftOut};
-use crate::episode::{EpisodeMeta, EpisodeSource};
+use crate::episode::{EpisodeMeta, EpisodeSource, Layout};
 
 /// Everything that is told of a dataset.
 #[derive(Debug, Serialize)]
@@ -45,7 +45,7 @@ pub fn run(args: &InfoArgs) -> anyhow::Result<()> {
 }
 
 fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
-    let dataset = Dataset::inspect(&args.path, &args.mapping.topics)?;
+    let dataset = Dataset::inspect(&sample::data(Some(&args.path))?, &args.mapping.topics)?;
     let counts = dataset.image_counts();
     let episodes: Vec<_> = dataset
         .metas()
@@ -58,6 +58,14 @@ fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
         })
         .collect();
     let mut left_out = dataset.left_out().to_vec();
+    if args.check {
+        left_out.extend(oddities(&dataset));
+    }
+    let unread = dataset.unread(&args.mapping.topics).into_iter();
+    left_out.extend(unread.map(|why| LeftOut {
+        what: "--topic".to_owned(),
+        why,
+    }));
     left_out.extend(episodes.iter().filter_map(|episode| {
         let why = match episode.images {
             Some(images) if images >= 2 => return None,
@@ -77,4 +85,21 @@ fn gather(args: &InfoArgs) -> anyhow::Result<Info> {
         files: dataset.files(),
         left_out,
     })
+}
+
+/// What is odd about the episodes, or why they cannot be read.
+fn oddities(dataset: &Dataset) -> Vec<LeftOut> {
+    let mut odd = Vec::new();
+    for (index, meta) in dataset.metas().iter().enumerate() {
+        let found = match dataset.load(index, Layout::default()) {
+            Ok(episode) => episode.oddities().collect(),
+            Err(error) => vec![error.to_string()],
+        };
+        let what = format!("episode {}", meta.id);
+        odd.extend(found.into_iter().map(|why| LeftOut {
+            what: what.clone(),
+            why,
+        }));
+    }
+    odd
 }

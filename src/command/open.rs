@@ -9,8 +9,10 @@ use serde::{Deserialize, Serialize};
 
 use super::sample;
 use crate::data::{Dataset, Role};
+use crate::episode::EpisodeSource;
 use crate::model::checkpoint::{self, CONFIG};
-use crate::model::observation::suits;
+use crate::model::config::Config;
+use crate::model::observation::{Unsuited, suits};
 use crate::session::predict::Predictor;
 use crate::session::trained::{Origin, Trained};
 use crate::train;
@@ -26,7 +28,7 @@ pub fn folders(asked: &[PathBuf], data: Option<&PathBuf>) -> anyhow::Result<Vec<
     Ok(models)
 }
 
-/// A dataset and models that suit it.
+/// A dataset and models for it.
 pub struct Opened {
     /// The episodes.
     pub dataset: Arc<Dataset>,
@@ -34,28 +36,55 @@ pub struct Opened {
     pub models: Vec<Arc<dyn Predictor>>,
 }
 
-/// Opens the dataset that was asked for, else the sample episodes, and the models of the folders. Refuses a model that
-/// was trained on other data.
+/// Opens the dataset that was asked for, else the sample episodes, and the models of the folders. Refuses data of other
+/// units or another rate than any of them was trained on; an episode that is odd by itself says so where it is shown.
 pub fn open(
     data: Option<&PathBuf>,
     topics: &[(Role, String)],
     folders: &[PathBuf],
 ) -> anyhow::Result<Opened> {
     let path = sample::data(data)?;
-    let dataset = Dataset::open_with(&path, topics)?;
+    let dataset = dataset(&path, topics)?;
     let mut models = Vec::with_capacity(folders.len());
+    let mut foreign = Vec::new();
     for folder in folders {
         models.push(model(folder)?);
         let config = checkpoint::load_config(&folder.join(CONFIG))?;
-        // One that cannot be read says so when it is shown; the others still open.
-        if let Ok(first) = dataset.episode_aligned(0, config.layout()) {
-            suits(&config, &first).with_context(|| path.display().to_string())?;
-        }
+        foreign.extend(unsuited(&config, &dataset));
+    }
+    if foreign.len() == models.len()
+        && let Some(why) = foreign.into_iter().next()
+    {
+        return Err(why).with_context(|| path.display().to_string());
     }
     Ok(Opened {
         dataset: Arc::new(dataset),
         models,
     })
+}
+
+/// Why a model was trained on other data, if both the first episode and the last say so: one of the two may be odd.
+fn unsuited(config: &Config, dataset: &Dataset) -> Option<Unsuited> {
+    let last = dataset.metas().len().checked_sub(1)?;
+    let mut found = None;
+    for index in [last, 0] {
+        // One that cannot be read, or holds values that are no numbers, says so when it is shown.
+        let episode = dataset.episode_aligned(index, config.layout()).ok()?;
+        match suits(config, &episode) {
+            Ok(()) | Err(Unsuited::NotFinite { .. }) => return None,
+            Err(why) => found = Some(why),
+        }
+    }
+    found
+}
+
+/// Opens a dataset, and tells what of it nobody should miss without knowing.
+pub fn dataset(path: &Path, topics: &[(Role, String)]) -> anyhow::Result<Dataset> {
+    let dataset = Dataset::open_with(path, topics)?;
+    for warning in dataset.warnings() {
+        super::note(&warning);
+    }
+    Ok(dataset)
 }
 
 /// The model of a checkpoint folder, for a session.

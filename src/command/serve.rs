@@ -32,7 +32,9 @@ enum Wake {
 /// Opens and serves.
 pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     let assets = match &args.web_root {
-        Some(folder) => Assets::of_folder(folder).context("--web-root")?,
+        Some(folder) => {
+            Assets::of_folder(folder).with_context(|| format!("--web-root {}", folder.display()))?
+        }
         None => Assets::built_in(),
     };
     // Before anything is served: a signal must never find nobody listening.
@@ -43,6 +45,7 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
         watched,
         opened,
     } = view::open(&ViewArgs {
+        path: args.path,
         data: args.data,
         model: args.model,
         mapping: args.mapping,
@@ -56,6 +59,7 @@ pub fn run(args: ServeArgs) -> anyhow::Result<()> {
     } else {
         session.apply(Command::FirstPredicted);
     }
+    view::warn(&mut session, &opened);
     let options = Options {
         address,
         read_only: args.read_only,

@@ -12,6 +12,7 @@ use anyhow::{Context, anyhow, bail};
 use candle_core::Device;
 
 use self::sets::Sets;
+use super::open;
 use crate::cli::TrainArgs;
 use crate::data::Dataset;
 use crate::episode::EpisodeSource;
@@ -44,7 +45,7 @@ pub fn run(args: &TrainArgs) -> anyhow::Result<()> {
         .build_global()
         .context("starting threads")?;
     keep_pages();
-    let dataset = Dataset::open_with(&args.data, &args.mapping.topics)?;
+    let dataset = open::dataset(&args.data, &args.mapping.topics)?;
     let origin = match origin {
         Some(origin) => same_run(args, origin, &dataset)?,
         None => Origin {

@@ -69,6 +69,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     if arrive(&mut app, args, &keys, in_terminal)? == Flow::Quit {
         return Ok(());
     }
+    warn(&mut app.session, &opened);
     if report == Some(Report::Failures) {
         wait(&mut app)?;
         app.session.apply(Command::Failure(1));
@@ -173,14 +174,23 @@ pub(super) struct Opening {
     pub opened: Opened,
 }
 
+/// Says what of the recordings is not there, where nothing else is to be said.
+pub(super) fn warn(session: &mut Session, opened: &Opened) {
+    let text = opened.dataset.warnings().join("; ");
+    if !text.is_empty() && session.snapshot().message.is_none() {
+        session.say(Message { error: false, text });
+    }
+}
+
 /// Opens what the arguments name.
 pub(super) fn open(args: &ViewArgs) -> anyhow::Result<Opening> {
-    let folders = open::folders(&args.model, args.data.as_ref())?;
+    let data = args.path.as_ref().or(args.data.as_ref());
+    let folders = open::folders(&args.model, data)?;
     // Before the models are read: what is written meanwhile is seen.
     let watched = folders.iter().enumerate();
     let watched = watched.filter_map(|(model, folder)| Watched::new(model, folder));
     let watched = watched.collect();
-    let opened = open::open(args.data.as_ref(), &args.mapping.topics, &folders)?;
+    let opened = open::open(data, &args.mapping.topics, &folders)?;
     let session = Session::new(Arc::clone(&opened.dataset) as _, opened.models.clone());
     Ok(Opening {
         session,

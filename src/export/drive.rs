@@ -49,7 +49,8 @@ pub struct Source<'a> {
     pub models: &'a [Arc<dyn Predictor>],
 }
 
-/// Exports what `plan` says. The sink is yet to be finished then.
+/// Exports what `plan` says. The sink is yet to be finished then. What is returned is why no model made anything of any
+/// episode, where that is so.
 ///
 /// # Errors
 /// If the sink refuses, if the onlooker stops it, or if no episode could be read.
@@ -59,12 +60,13 @@ pub fn drive(
     plan: &Plan,
     sink: &mut dyn Sink,
     onlooker: &mut dyn Onlooker,
-) -> Result<(), ExportError> {
+) -> Result<Option<String>, ExportError> {
     let mut why = "no episode was asked for".to_owned();
     let layout = source.models.first().map(|model| model.layout());
     let layout = layout.unwrap_or_default();
     let mut provenance: Option<Arc<Provenance>> = None;
     let mut written = 0;
+    let mut believed = false;
     for &index in &plan.episodes {
         let meta = source.episodes.metas().get(index);
         onlooker.begins(meta.map_or("", |meta| &meta.id));
@@ -96,6 +98,12 @@ pub fn drive(
             let target = (index, model);
             models.push(shown(session, target, steps.clone(), plan, onlooker)?);
         }
+        let mut all = models.iter().flatten();
+        believed |= all.any(|snapshot| snapshot.fusion.is_some());
+        let told = models.iter().flatten().find_map(|it| it.message.as_ref());
+        if let Some(told) = told.filter(|message| message.error) {
+            why.clone_from(&told.text);
+        }
         let first = models.first().and_then(|snapshots| snapshots.first());
         let state = first.map(|snapshot| State::parse(&snapshot.state).0);
         let provenance = provenance.get_or_insert_with(|| {
@@ -116,7 +124,7 @@ pub fn drive(
     if written == 0 {
         return Err(ExportError::Nothing(why));
     }
-    Ok(())
+    Ok((!believed).then_some(why))
 }
 
 /// What a model shows of an episode at each of the steps.
@@ -267,7 +275,10 @@ mod tests {
         }
     }
 
-    fn driven(plan: &Plan, onlooker: &mut Watched) -> (Vec<Run>, Result<(), ExportError>) {
+    fn driven(
+        plan: &Plan,
+        onlooker: &mut Watched,
+    ) -> (Vec<Run>, Result<Option<String>, ExportError>) {
         let source = FakeSource::new(3);
         let models: Vec<Arc<dyn Predictor>> = vec![
             Arc::new(FakePredictor::three()),
@@ -300,7 +311,7 @@ mod tests {
         };
         let mut onlooker = Watched::default();
         let (runs, result) = driven(&plan, &mut onlooker);
-        result.unwrap();
+        assert_eq!(result.unwrap(), None, "the models made something of it");
         assert_eq!(onlooker.notes, [""; 0]);
         let ids: Vec<&str> = runs.iter().map(|run| &*run.episode.meta.id).collect();
         assert_eq!(ids, ["square_02", "square_00"]);

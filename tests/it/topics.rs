@@ -101,3 +101,50 @@ fn every_command_that_opens_a_dataset_takes_them() {
     run("eval", &["--model".as_ref(), &model]);
     run("view", &["--print".as_ref(), "--model".as_ref(), &model]);
 }
+
+#[test]
+fn a_topic_that_is_not_there_is_named_with_those_that_would_do() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = mapped(folder.path(), "");
+    for (topic, words) in [
+        (
+            "haptic=/ft",
+            "haptic=/ft: is no topic here; of its type: /wrench",
+        ),
+        ("haptic=/joint", "haptic=/joint: is no topic here"),
+        ("object=/ft", "of its type: /ee/pose, /object/pose"),
+    ] {
+        let (fine, said) = info(&path, &[topic]);
+        assert!(fine && said.contains(words), "{topic}: {said}");
+        let mut view = poescope();
+        view.args(["view", "--print", "--topic", topic]).arg(&path);
+        let output = view.output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success(), "{topic}");
+        assert!(
+            said.contains("a.mcap: --topic") && said.contains(words),
+            "{said}"
+        );
+    }
+}
+
+#[test]
+fn an_export_in_which_no_model_believes_anything_has_failed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = mapped(folder.path(), "[topics]\nhaptic = \"/ft\"\n");
+    let model =
+        crate::common::untrained(folder.path().join("model"), crate::common::three_experts());
+    let out = folder.path().join("out.csv");
+    let mut export = poescope();
+    export.arg("export").arg("--data").arg(&path);
+    export.arg("--model").arg(&model).arg("--out").arg(&out);
+    let output = export.output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(!output.status.success(), "{said}");
+    assert!(
+        said.contains("out.csv: written, but without any belief"),
+        "{said}"
+    );
+    assert!(said.contains("needs haptic"), "{said}");
+    assert!(out.exists());
+}

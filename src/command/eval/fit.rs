@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::entrants::Entrant;
 use super::ground::{odd, unsuited};
-use crate::command::{note, progress_bar};
+use crate::command::{note, open, progress_bar};
 use crate::data::{Dataset, Role};
 use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::protocol::Protocol;
@@ -48,7 +48,7 @@ impl Fit<'_> {
                 || format!("--fit: {path} has scores alone; name the checkpoint folder instead");
             scorers.push((entrant, entrant.scorer().with_context(weightless)?));
         }
-        let dataset = Dataset::open_with(self.data, self.topics)?;
+        let dataset = open::dataset(self.data, self.topics)?;
         for (candidate, (entrant, scorer)) in candidates.iter_mut().zip(scorers) {
             let splits = dataset
                 .splits(entrant.about.training.split_seed())

@@ -7,8 +7,7 @@ use anyhow::{Context, bail};
 use super::entrants::{Entrant, Source};
 use super::scores::{Outcome, fault};
 use crate::cli::EvalArgs;
-use crate::command::note;
-use crate::command::sample;
+use crate::command::{note, open, sample};
 use crate::data::Dataset;
 use crate::episode::{Episode, EpisodeSource, Split};
 use crate::eval::score::{Candidate, Contest, score};
@@ -50,7 +49,7 @@ impl Ground {
             });
         }
         let path = sample::data(args.data.as_ref())?;
-        let dataset = Dataset::open_with(&path, &args.mapping.topics)?;
+        let dataset = open::dataset(&path, &args.mapping.topics)?;
         let (split, episodes) = wanted(args, &dataset, entrants)?;
         let scope = Scope {
             data: dataset.name().to_owned(),
@@ -68,6 +67,23 @@ impl Ground {
     /// The dataset, where it is at hand.
     pub fn dataset(&self) -> Option<&Dataset> {
         self.dataset.as_ref()
+    }
+
+    /// Which splits there are instead: `, but 24 of train`. What names none is of `train`.
+    pub fn has(&self) -> String {
+        let splits = self.dataset.as_ref().map(|dataset| dataset.splits(0));
+        let of = |split: &Split| {
+            let count = splits.iter().flatten().filter(|own| *own == split).count();
+            (count > 0).then(|| format!("{count} of {}", split.name()))
+        };
+        let all: Vec<String> = [Split::Train, Split::Val, Split::Test]
+            .iter()
+            .filter_map(of)
+            .collect();
+        if all.is_empty() {
+            return String::new();
+        }
+        format!(", but {}", all.join(", "))
     }
 
     /// Where the episodes come from, as [`Dataset::origin`] has it.

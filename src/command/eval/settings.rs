@@ -50,12 +50,7 @@ pub fn subjects(candidates: &[Candidate], states: &[String]) -> anyhow::Result<V
 
 /// Switches and damage of a state string, and named by them: where it looks and what it compares does not count here.
 fn read(text: &str) -> anyhow::Result<Setting> {
-    let versioned = if text.split(';').any(|part| part.trim().starts_with("v=")) {
-        text.to_owned()
-    } else {
-        format!("v=1;{text}")
-    };
-    let (state, complaints) = State::parse(&versioned);
+    let (state, complaints) = State::parse(text);
     if !complaints.is_empty() {
         return Err(anyhow!(complaints.join("; ")));
     }
