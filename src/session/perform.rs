@@ -176,6 +176,7 @@ impl Session {
     pub(super) fn go_to(&mut self, target: Target) {
         if target.episode != self.target.episode {
             self.forget_steps();
+            self.oddity = 0;
         }
         self.target = target;
         self.repair();
