@@ -196,14 +196,14 @@ impl Board {
             let what = format!("the prediction {horizon} steps on");
             sentences.push(say(&what, &predicted.sentence));
         }
-        if let Some(propagated) = at_horizon(&self.by_propagation) {
-            let what = "with its spread carried along (A P Aᵀ + Q) it";
-            sentences.push(say(what, &propagated.sentence));
-        }
         if let Some(seeing_on) = at_horizon(&self.by_filter) {
             let image = self.settings.context + horizon;
             let what = format!("seeing on, the belief at image {image}");
             sentences.push(say(&what, &seeing_on.sentence));
+        }
+        if let Some(propagated) = at_horizon(&self.by_propagation) {
+            let what = "the prediction with its spread carried along (A P Aᵀ + Q)";
+            sentences.push(say(what, &propagated.sentence));
         }
         if let Some(dependence) = &dependence {
             sentences.push(dependence.sentence.clone());
