@@ -98,10 +98,11 @@ pub fn drive(
             let target = (index, model);
             models.push(shown(session, target, steps.clone(), plan, onlooker)?);
         }
+        // Not its fusion: a model without a product has a belief all the same.
         let mut all = models.iter().flatten();
-        believed |= all.any(|snapshot| snapshot.fusion.is_some());
-        let told = models.iter().flatten().find_map(|it| it.message.as_ref());
-        if let Some(told) = told.filter(|message| message.error) {
+        believed |= all.any(|snapshot| snapshot.belief.is_some());
+        let mut messages = models.iter().flatten().filter_map(|it| it.message.as_ref());
+        if let Some(told) = messages.find(|message| message.error) {
             why.clone_from(&told.text);
         }
         let first = models.first().and_then(|snapshots| snapshots.first());
