@@ -8,6 +8,7 @@ pub mod loader;
 pub mod masks;
 pub mod metrics;
 pub mod schedule;
+mod sitting;
 pub mod state;
 pub mod statistics;
 pub mod step;
@@ -17,24 +18,23 @@ pub mod validate;
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use thiserror::Error;
 
 use self::batch::{Batch, Draws};
-use self::loader::{AHEAD, Loader};
-use self::metrics::Meter;
-use self::schedule::Phase;
+use self::loader::Loader;
+use self::sitting::{Loaded, Sitting};
 use self::state::State;
 use self::step::Losses;
-use self::tensorboard::EventWriter;
-use self::validate::{AFTER_EPOCH, Validation};
+use self::validate::Validation;
 use crate::data::{DataError, Episodes};
 use crate::episode::Episode;
 use crate::model::Model;
 use crate::model::checkpoint::{CheckpointError, first_line};
+use crate::model::config::Config;
 use crate::model::observation::ObserveError;
 
 /// Why training stopped early.
@@ -134,8 +134,10 @@ pub enum Outcome {
     Stopped,
 }
 
-/// A batch, and the names of its episodes.
-type Loaded = Result<(Batch, Vec<String>), TrainError>;
+/// Updates of an epoch over `train`.
+pub fn epoch_updates(train: Episodes, config: &Config) -> u64 {
+    (train.len() / config.training.batch).max(1) as u64
+}
 
 /// Trains `model` from `state` until the budget is used up or it is stopped; leaves a checkpoint either way.
 pub fn run(
@@ -145,7 +147,7 @@ pub fn run(
     report: impl FnMut(&Progress),
 ) -> Result<Outcome, TrainError> {
     let config = &model.config;
-    let epoch_updates = epoch_updates(model, run);
+    let epoch_updates = epoch_updates(run.train, config);
     let prepare = move |draws: Draws| -> Loaded {
         let chosen = batch::choose(
             run.train.len(),
@@ -166,139 +168,6 @@ pub fn run(
     thread::scope(|scope| {
         let loader =
             Loader::start(scope, prepare).map_err(|error| TrainError::Loader(error.to_string()))?;
-        drive(model, state, run, &loader, report)
+        Sitting::new(model, state, run, epoch_updates, &loader)?.train(state, report)
     })
-}
-
-fn epoch_updates(model: &Model, run: Run) -> u64 {
-    (run.train.len() / model.config.training.batch).max(1) as u64
-}
-
-/// The loop: one update a turn.
-fn drive(
-    model: &Model,
-    state: &mut State,
-    run: Run,
-    loader: &Loader<Draws, Loaded>,
-    mut report: impl FnMut(&Progress),
-) -> Result<Outcome, TrainError> {
-    let training = &model.config.training;
-    let budget = state.origin.budget;
-    let epoch_updates = epoch_updates(model, run);
-    let mut ordered = state.update;
-    let mut meter = Meter::default();
-    let mut saved: Option<Instant> = None;
-    let mut events = EventWriter::append(run.folder, state.update + 1)?;
-    loop {
-        let fraction = budget.fraction(state.update, epoch_updates, state.elapsed);
-        if fraction >= 1.0 || run.stop.load(Ordering::Relaxed) {
-            if saved.is_some() && !state.update.is_multiple_of(epoch_updates) {
-                // Nobody has seen yet what the last update has made of the weights.
-                let val = looked_at(model, state, run, Vec::new())?;
-                if fraction >= 1.0 {
-                    // The epoch that the budget has cut short.
-                    let last = state.update.saturating_sub(1);
-                    let at = budget.fraction(last, epoch_updates, state.elapsed);
-                    let rate = Phase::of(training, last, epoch_updates, at).rate;
-                    let line = metrics::Line::of(state, epoch_updates, rate, meter.take(), val);
-                    metrics::log(run.folder, &mut events, &line)?;
-                }
-            }
-            state.save(model, run.folder)?;
-            return Ok(if fraction >= 1.0 {
-                Outcome::Finished
-            } else {
-                Outcome::Stopped
-            });
-        }
-        let started = Instant::now();
-        while ordered <= state.update + AHEAD as u64 {
-            let ahead = budget.fraction(ordered, epoch_updates, state.elapsed);
-            loader.order(Draws {
-                seed: state.origin.seed,
-                update: ordered,
-                segment: Phase::of(training, ordered, epoch_updates, ahead).segment,
-            });
-            ordered += 1;
-        }
-        let (loaded, waited) = loader
-            .next()
-            .ok_or_else(|| TrainError::Loader("the thread has ended".to_owned()))?;
-        let (batch, episodes) = loaded?;
-        let phase = Phase::of(training, state.update, epoch_updates, fraction);
-        if let Some(before) = state.update.checked_sub(1) {
-            let before = Phase::of(training, before, epoch_updates, fraction);
-            if before.stage != phase.stage {
-                // Each stage has an optimiser of its own.
-                state.moments.clear();
-            }
-        }
-        let differentiating = Instant::now();
-        let gradients = step::gradients(model, &batch, &phase)?;
-        let mut stepping = differentiating.elapsed();
-        if let Some(what) = gradients.not_finite() {
-            return Err(TrainError::NotFinite {
-                update: state.update,
-                what,
-                episodes,
-                kept: state.update > 0,
-            });
-        }
-        // These weights have just shown that they are good, which nobody knows of those after the update. The first
-        // checkpoint is there at once, to be looked at and to resume from.
-        if saved.is_none_or(|at| at.elapsed() >= run.checkpoint_every) {
-            state.save(model, run.folder)?;
-            saved = Some(Instant::now());
-        }
-        let applying = Instant::now();
-        gradients.apply(model, &mut state.moments, &phase)?;
-        stepping += applying.elapsed();
-        meter.add(&gradients, stepping, waited);
-        state.update += 1;
-        state.average(model)?;
-        let losses = state.losses.map_or(gradients.losses, |running| {
-            running.towards(gradients.losses, 0.05)
-        });
-        state.losses = Some(losses);
-        let epoch_ended = state.update.is_multiple_of(epoch_updates);
-        let validation = if epoch_ended {
-            looked_at(model, state, run, episodes)?
-        } else {
-            None
-        };
-        state.elapsed += started.elapsed();
-        if epoch_ended {
-            let val = validation.clone();
-            let line = metrics::Line::of(state, epoch_updates, phase.rate, meter.take(), val);
-            metrics::log(run.folder, &mut events, &line)?;
-        }
-        report(&Progress {
-            update: state.update,
-            epoch_updates,
-            fraction: budget.fraction(state.update, epoch_updates, state.elapsed),
-            elapsed: state.elapsed,
-            losses,
-            epoch_ended,
-            validation,
-        });
-    }
-}
-
-/// What the weights that are kept come to on `val`; an error if that is no number, after an update on `episodes`.
-fn looked_at(
-    model: &Model,
-    state: &State,
-    run: Run,
-    episodes: Vec<String>,
-) -> Result<Option<Validation>, TrainError> {
-    let scores = validate::validate(state.kept(model), run.val, AFTER_EPOCH)?;
-    if scores.as_ref().is_some_and(|s| !s.losses.is_finite()) {
-        return Err(TrainError::NotFinite {
-            update: state.update - 1,
-            what: "the validation loss after it".to_owned(),
-            episodes,
-            kept: true,
-        });
-    }
-    Ok(scores)
 }

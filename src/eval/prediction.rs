@@ -20,6 +20,18 @@ pub fn encode<M: Borrow<Model>>(
     inspector.encode(&seen)
 }
 
+/// What the sensors say of an episode, and what is believed of it with every expert on.
+pub fn believe<M: Borrow<Model>>(
+    inspector: &Inspector<M>,
+    episode: &Episode,
+) -> Result<(ExpertTrace, BeliefTrace)> {
+    let experts = encode(inspector, episode)?;
+    let switches = inspector.model().config.switches();
+    let alphas = Alphas::trained(experts.controls.len() + 1, switches);
+    let beliefs = inspector.filter(&experts, &alphas)?;
+    Ok((experts, beliefs))
+}
+
 /// The last belief that saw something, under a protocol.
 pub fn start<M: Borrow<Model>>(inspector: &Inspector<M>, protocol: Protocol) -> Result<usize> {
     let stack = inspector.model().config.frame_stack;
@@ -56,10 +68,7 @@ pub fn open_loop<M: Borrow<Model>>(
     episode: &Episode,
     protocol: Protocol,
 ) -> Result<Vec<f32>> {
-    let experts = encode(inspector, episode)?;
-    let config = &inspector.model().config;
-    let alphas = Alphas::trained(experts.controls.len() + 1, config.switches());
-    let beliefs = inspector.filter(&experts, &alphas)?;
+    let (experts, beliefs) = believe(inspector, episode)?;
     let rolled = roll(inspector, &experts, &beliefs, protocol)?;
     inspector.decode_pixels(&rolled.gaussians.mean)
 }

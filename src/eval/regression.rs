@@ -9,7 +9,7 @@ use candle_core::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::prediction::{encode, roll};
+use super::prediction::{believe, roll};
 use super::protocol::Protocol;
 use super::score::{Contest, EpisodeScores, Subject};
 use super::spread::Spread;
@@ -18,7 +18,7 @@ use crate::measure::spread::sample_covariance;
 use crate::model::Model;
 use crate::model::inspect::Inspector;
 use crate::model::probe::{Pairs, Readers, Regressors};
-use crate::model::trace::{Alphas, GaussianTrace};
+use crate::model::trace::GaussianTrace;
 
 /// What is read: x, y in metres, sine and cosine of yaw.
 pub const OUTPUTS: usize = 4;
@@ -178,9 +178,7 @@ where
         if protocol.horizon == 0 || protocol.context <= config.frame_stack {
             return Ok(None);
         }
-        let experts = encode(inspector, episode)?;
-        let alphas = Alphas::trained(experts.controls.len() + 1, config.switches());
-        let beliefs = inspector.filter(&experts, &alphas)?;
+        let (experts, beliefs) = believe(inspector, episode)?;
         let rolled = roll(inspector, &experts, &beliefs, protocol)?;
         let poses = poses.iter().map(|p| [p.x, p.y, p.yaw]).collect();
         Ok(Some((beliefs.posterior, rolled.gaussians, poses)))

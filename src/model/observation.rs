@@ -83,7 +83,8 @@ pub enum Unsuited {
 
 /// Times between images may differ by this factor from those of the training set.
 const RATE_TOLERANCE: f64 = 1.25;
-/// Scaled channels have a root mean square near 1 in training; beyond this they are of another kind.
+/// Channels that are scaled by the training set's deviation have a root mean square near 1; beyond this they are of another
+/// kind. Of fixed scales, as `released` has them, it tells only what is off by more than that from all that was seen.
 const SCALE_TOLERANCE: f32 = 30.0;
 
 /// Whether `episode` is of the kind of data the model was trained on: image rate, and units of its channels.

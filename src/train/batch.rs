@@ -94,7 +94,7 @@ fn draw_sets(config: &Config, beliefs: usize, rng: &mut impl Rng) -> Vec<ExpertS
 
 impl Batch {
     /// A batch with the noise, masks and segments of an update; without `draws`, whole, on the mean path and with every
-    /// expert. Episodes must be of one length. Runs on one thread, the loader's, and leaves the others to the step.
+    /// expert. Episodes must be of one length. Runs on the thread that calls, and leaves the others to the step.
     pub fn new(
         config: &Config,
         episodes: &[&Episode],

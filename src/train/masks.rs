@@ -1,5 +1,5 @@
 //! Which experts are left out while training, so that switches are in the model's distribution (after Wu & Goodman
-//! 2018): one path of sets an episode and update, half of them full, else a set drawn from all sensor sets and redrawn
+//! 2018): one path of sets an episode and update, half of them full (before [`roll_out`] cuts some), else a set drawn from all sensor sets and redrawn
 //! at random steps. The prior is always in.
 //!
 //! A redraw takes the empty set as often as all others together: what follows is a rollout from a belief that had seen

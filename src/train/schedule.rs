@@ -19,17 +19,17 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// The part that is used, 1 at the end; 0 without any limit.
+    /// The part that is used, 0 to 1; 0 without any limit.
     pub fn fraction(&self, updates: u64, epoch_updates: u64, elapsed: Duration) -> f64 {
         let by_epochs = self
             .epochs
-            .map(|epochs| updates as f64 / (epochs * epoch_updates) as f64);
+            .map(|epochs| updates as f64 / (epochs as f64 * epoch_updates as f64));
         let by_minutes = self
             .minutes
             .map(|minutes| elapsed.as_secs_f64() / (minutes * 60.0));
         let by_updates = self.updates.map(|most| updates as f64 / most as f64);
         let all = [by_epochs, by_updates, by_minutes];
-        all.into_iter().flatten().fold(0.0, f64::max)
+        all.into_iter().flatten().fold(0.0, f64::max).min(1.0)
     }
 }
 
@@ -85,7 +85,7 @@ impl Phase {
 /// The rate rises along a line over the warm-up and falls along a cosine over the budget.
 fn learning_rate(training: &Training, update: u64, fraction: f64) -> f64 {
     let rise = ((update + 1) as f64 / training.warm_up.max(1) as f64).min(1.0);
-    let cosine = 0.5 * (1.0 + (std::f64::consts::PI * fraction.clamp(0.0, 1.0)).cos());
+    let cosine = 0.5 * (1.0 + (std::f64::consts::PI * fraction).cos());
     training.learning_rate * rise * (training.final_rate + (1.0 - training.final_rate) * cosine)
 }
 
@@ -126,5 +126,12 @@ mod tests {
         assert!((budget.fraction(300, 100, Duration::ZERO) - 0.75).abs() < 1e-12);
         assert!((budget.fraction(50, 10, Duration::from_secs(6)) - 0.5).abs() < 1e-12);
         assert!((budget.fraction(10, 10, Duration::from_secs(30)) - 0.5).abs() < 1e-12);
+        // A validation may last longer than the minutes that were left, and nobody waits for so many epochs.
+        assert!((budget.fraction(10, 10, Duration::from_hours(1)) - 1.0).abs() < 1e-12);
+        let endless = Budget {
+            epochs: Some(u64::MAX),
+            ..Budget::default()
+        };
+        assert!(endless.fraction(1, 2, Duration::ZERO) < 1e-12);
     }
 }

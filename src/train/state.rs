@@ -193,9 +193,15 @@ impl State {
         };
         let fill = |model: &Model, kind: &str| -> Result<(), CheckpointError> {
             for network in model.networks() {
-                let theta = numbers(&format!("{}.{kind}", network.name))?;
+                let name = format!("{}.{kind}", network.name);
+                let theta = numbers(&name)?;
                 let set = network.theta().set(&theta);
                 set.map_err(|error| refuse(checkpoint::first_line(&error)))?;
+                let read = theta.to_vec1::<f32>();
+                let read = read.map_err(|error| refuse(checkpoint::first_line(&error)))?;
+                if !read.iter().all(|x| x.is_finite()) {
+                    return Err(refuse(format!("tensor `{name}` is not finite")));
+                }
             }
             Ok(())
         };
@@ -211,6 +217,11 @@ impl State {
         for (name, updates) in counters.moment_updates {
             let first = numbers(&format!("{name}.first"))?.to_vec1()?;
             let second = numbers(&format!("{name}.second"))?.to_vec1()?;
+            let network = model.networks().into_iter().find(|own| own.name == name);
+            let wanted = network.map(|network| network.theta().elem_count());
+            if [Some(first.len()), Some(second.len())] != [wanted; 2] {
+                return Err(refuse(format!("the moments of `{name}` are of another model")).into());
+            }
             moments.insert(
                 name,
                 Moments {

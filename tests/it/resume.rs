@@ -158,6 +158,28 @@ fn a_stopped_run_ends_where_an_uninterrupted_one_does() {
     assert!(before.iter().all(|(name, theta)| after[name] != *theta));
 }
 
+#[test]
+fn a_state_with_a_weight_that_is_no_number_is_not_gone_on_from() {
+    let folder = tempfile::tempdir().unwrap();
+    let episodes = episodes(&planar());
+    let config = scaled(&episodes, folder.path());
+    let store = stored(&episodes, u64::MAX, folder.path());
+    let model = Model::new(config, 1, &Device::Cpu).unwrap();
+    let mut state = State::new(origin());
+    sit(&model, &mut state, &store, folder.path(), Some(1)).unwrap();
+    let path = folder.path().join(STATE);
+    let mut bytes = fs::read(&path).unwrap();
+    let (header, about) = safetensors::SafeTensors::read_metadata(&bytes).unwrap();
+    let tensors = about.tensors();
+    let (name, info) = tensors.iter().find(|(n, _)| n.ends_with("theta")).unwrap();
+    let first = 8 + header + info.data_offsets.0;
+    bytes[first..first + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    fs::write(&path, bytes).unwrap();
+    let refused = State::load(&model, folder.path()).unwrap_err().to_string();
+    let said = refused.contains(STATE) && refused.contains(&format!("`{name}` is not finite"));
+    assert!(said, "{refused}");
+}
+
 /// Trains until a number is not finite: which update, what it was, among which episodes.
 fn fails(
     model: &Model,

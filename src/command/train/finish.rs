@@ -10,14 +10,15 @@ use serde_json::{Value, json};
 use super::sets::Sets;
 use crate::data::{Dataset, Episodes};
 use crate::episode::{Episode, EpisodeSource};
+use crate::eval::prediction::believe;
 use crate::eval::{Protocol, regression};
 use crate::measure::events::contact_newtons;
 use crate::model::Model;
 use crate::model::checkpoint::{MEAN_FRAME, PROBE, REPORT, write_atomic};
 use crate::model::inspect::Inspector;
-use crate::model::observation::observe;
 use crate::model::probe::{Positions, Probe, Regressors};
-use crate::model::trace::{Alphas, GaussianTrace};
+use crate::model::trace::GaussianTrace;
+use crate::train::epoch_updates;
 use crate::train::metrics::METRICS;
 use crate::train::state::State;
 use crate::train::statistics;
@@ -62,7 +63,7 @@ pub fn write(
         .zip(&config.training.error_weights)
         .map(|((name, error), weight)| json!({ "expert": name, "error_at_mean": error, "weight": weight }))
         .collect();
-    let epoch_updates = (sets.train().len() / config.training.batch).max(1);
+    let epoch_updates = epoch_updates(sets.train(), config);
     let peaks = peaks(sets.train())?;
     let report = json!({
         "poescope": env!("CARGO_PKG_VERSION"),
@@ -152,10 +153,7 @@ fn positions(inspector: &Inspector<&Model>, episodes: Episodes) -> anyhow::Resul
         let Some(object) = &episode.object else {
             return Ok((GaussianTrace::default(), Vec::new()));
         };
-        let seen = observe(config, episode)?;
-        let experts = inspector.encode(&seen)?;
-        let beliefs =
-            inspector.filter(&experts, &Alphas::trained(seen.beliefs, config.switches()))?;
+        let (_, beliefs) = believe(inspector, episode)?;
         let truth = object[config.frame_stack..]
             .iter()
             .map(|pose| [pose.x, pose.y])

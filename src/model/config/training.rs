@@ -8,7 +8,7 @@ use super::{ConfigError, refuse};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Training {
-    /// Epochs when a run is given neither epochs nor minutes.
+    /// Epochs when a run is given no budget.
     pub epochs: u64,
     /// Episodes of a batch.
     pub batch: usize,
