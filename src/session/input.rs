@@ -69,9 +69,12 @@ impl Input {
                 let prior = snapshot.experts.len().saturating_sub(1);
                 Taken::Action(Action::Session(Command::Solo(prior)))
             }
-            Some(Mode::Solo) => digit(key).map_or(Taken::Not, |position| {
+            Some(Mode::Solo) => sensor(key, snapshot).map_or(Taken::Not, |position| {
                 self.mode = None;
-                Taken::Action(Action::Session(Command::Solo(position)))
+                Taken::Action(match position {
+                    Ok(position) => Action::Session(Command::Solo(position)),
+                    Err(why) => why,
+                })
             }),
             Some(Mode::Temper) => self.temper(key, snapshot),
             Some(Mode::Context) => adjust::by(key).map(Command::Context).into(),

@@ -97,6 +97,14 @@ impl Playback {
         before != (self.cursor, self.playing)
     }
 
+    /// Another episode has other steps.
+    pub fn forget_selection(&mut self) {
+        self.selection = None;
+        if self.looping == Looping::Selection {
+            self.looping = Looping::All;
+        }
+    }
+
     /// First and last selected step, once both are chosen.
     pub fn selected(&self) -> Option<(usize, usize)> {
         let (first, last) = self.selection?;
@@ -110,13 +118,15 @@ impl Playback {
         (first.min(end), last.min(end))
     }
 
-    /// Time until the cursor moves on; none while it rests.
+    /// How soon to look again whether the cursor moves on: no later than an update counts for. None while it rests.
     pub fn next_step_in(&self, secs: &[f64]) -> Option<Duration> {
         if !self.playing || secs.is_empty() {
             return None;
         }
         let left = (step_secs(secs, self.cursor) - self.into_step_secs) / f64::from(self.speed());
-        Some(Duration::try_from_secs_f64(left.max(0.0)).unwrap_or(Duration::MAX))
+        Some(Duration::from_secs_f64(
+            left.clamp(0.0, LONGEST_UPDATE_SECS),
+        ))
     }
 }
 
@@ -194,6 +204,19 @@ mod tests {
         playback.playing = false;
         assert!(!playback.update(Duration::from_secs(1), &SECS));
         assert_eq!(playback.next_step_in(&SECS), None);
+    }
+
+    #[test]
+    fn a_slow_step_lasts_as_long_as_it_should_for_a_face_that_sleeps() {
+        let mut playback = playing(Looping::All);
+        playback.change_speed(-3);
+        let mut gone = Duration::ZERO;
+        while playback.cursor == 0 {
+            let nap = playback.next_step_in(&SECS).unwrap_or_default();
+            playback.update(nap, &SECS);
+            gone += nap;
+        }
+        assert!((gone.as_secs_f64() - 0.8).abs() < 1e-3, "{gone:?}");
     }
 
     #[test]

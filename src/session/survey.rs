@@ -348,7 +348,9 @@ impl Surveyor {
         let mut sheets = Vec::new();
         for &episode in fit_on.iter().take(board::FITTED_ON) {
             self.give_way()?;
-            sheets.extend(self.sheet(request.model, episode, predictor.as_ref()));
+            sheets.extend(guarded(|| {
+                self.sheet(request.model, episode, predictor.as_ref())
+            }));
         }
         let name = if val.is_empty() {
             wanted.split.map_or("all", Split::name)

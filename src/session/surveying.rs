@@ -202,17 +202,20 @@ impl Session {
     /// Nothing that a model's survey has found holds for the one that takes its place.
     pub(super) fn survey_anew(&mut self, model: usize, predictor: &Arc<dyn Predictor>) {
         self.known.remove(&model);
-        self.board = None;
         if model == self.target.model {
+            self.board = None;
             self.table.take(&[]);
         }
         let Some(survey) = &mut self.survey else {
             return;
         };
         lock(&survey.shared.successors).insert(model, Arc::clone(predictor));
-        // Answers on their way are the former model's.
-        survey.generation += 1;
-        survey.wanted = None;
+        let asked = survey.wanted.as_ref();
+        if asked.is_none_or(|wanted| wanted.model == model || wanted.vision == Some(model)) {
+            // Answers on their way are the former model's.
+            survey.generation += 1;
+            survey.wanted = None;
+        }
     }
 
     /// Ends it.

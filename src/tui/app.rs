@@ -248,7 +248,9 @@ impl App {
 
     /// Takes what the mouse did at a cell of the screen.
     pub fn point(&mut self, pointer: Pointer, at: Position) {
-        if self.face.help.is_some() || self.face.episodes.is_some() {
+        let face = &self.face;
+        if face.help.is_some() || face.episodes.is_some() || face.palette.is_some() {
+            // What lies below could not be seen.
             return;
         }
         let snapshot = self.session.snapshot();

@@ -129,8 +129,12 @@ fn header(buf: &mut Buffer, pane: Rect, snapshot: &Snapshot, face: &Face) {
     }
     let playing = if snapshot.playing { "▸" } else { "‖" };
     let mut play = format!("{playing} {}×", snapshot.speed);
-    if pane.width >= 54 && snapshot.looping != Looping::Off {
-        play.push_str(" loop");
+    if pane.width >= 54 {
+        play.push_str(match snapshot.looping {
+            Looping::Off => "",
+            Looping::All => " loop",
+            Looping::Selection => " loop sel",
+        });
     }
     at = text(
         buf,

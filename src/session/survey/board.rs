@@ -26,6 +26,8 @@ pub struct Board {
     split: Option<Split>,
     total: usize,
     looked_at: usize,
+    /// Images seen before the prediction: the wish, or as many as the longest episode has room for.
+    context: usize,
     /// Of the filtered belief, then of each horizon, with the head's spread.
     by_head: Vec<Vec<Error2>>,
     /// The same with A P Aᵀ + Q carried along.
@@ -51,6 +53,7 @@ impl Board {
             split,
             total,
             looked_at: 0,
+            context: 0,
             by_head: Vec::new(),
             by_propagation: Vec::new(),
             by_filter: Vec::new(),
@@ -87,6 +90,7 @@ impl Board {
         let at = position(predictor, posterior)?;
         let residual = predictor.position_residual()?;
         self.residual = residual;
+        self.context = self.context.max(rollout.start + 1);
         let off = at.error(truth_m);
         self.bare.push(off.beside(residual.map(|r| -r)));
         push(&mut self.by_head, 0, off);
@@ -184,7 +188,7 @@ impl Board {
         let say = |what: &str, sentence: &str| format!("{what} {sentence}");
         let mut sentences = Vec::new();
         if let Some(filtered) = &filtered {
-            let what = format!("the belief at image {}", self.settings.context);
+            let what = format!("the belief at image {}", self.context);
             sentences.push(say(&what, &filtered.sentence));
         }
         if let Some(bare) = mean_nees(&self.bare).filter(|_| filtered.is_some()) {
@@ -197,7 +201,7 @@ impl Board {
             sentences.push(say(&what, &predicted.sentence));
         }
         if let Some(seeing_on) = at_horizon(&self.by_filter) {
-            let image = self.settings.context + horizon;
+            let image = self.context + horizon;
             let what = format!("seeing on, the belief at image {image}");
             sentences.push(say(&what, &seeing_on.sentence));
         }

@@ -6,8 +6,10 @@ use crate::session::snapshot::Snapshot;
 /// Adds the folder.
 pub fn add(panel: &mut Panel, snapshot: &Snapshot, spread: bool) {
     panel.folder("rollout", "Prediction", true);
-    let most = snapshot.steps().max(snapshot.context).max(1);
-    let range = Range::whole(1, most);
+    // Where there is a belief, and something to predict after it.
+    let least = snapshot.first_belief() + 1;
+    let most = snapshot.steps().saturating_sub(1);
+    let range = Range::whole(least.min(snapshot.context), most.max(snapshot.context));
     let hint = "Images seen before the prediction";
     panel.slider(
         "context",
