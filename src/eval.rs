@@ -7,6 +7,7 @@
 //! Scores are computed episode by episode, so that a long run can be cut into shards and taken up again; everything
 //! after them is read from the scores alone.
 
+pub mod claims;
 pub mod comparison;
 pub mod contact;
 pub mod credit;

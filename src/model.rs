@@ -19,6 +19,7 @@ mod layers;
 pub mod network;
 pub mod observation;
 pub mod probe;
+pub mod switches;
 pub mod trace;
 
 use candle_core::{Device, Result, Tensor};

@@ -25,7 +25,6 @@ pub mod settings;
 pub mod snapshot;
 pub mod state;
 pub mod survey;
-pub mod switches;
 pub mod trained;
 pub mod wants;
 
@@ -49,7 +48,7 @@ use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use attach::Lines;
-use command::{Command, Scope};
+use command::{Command, Needs, Scope};
 use known::Known;
 use playback::Playback;
 use predict::Predictor;
@@ -125,6 +124,12 @@ enum Pending {
     Command(Command),
     Seek(usize),
     Restoration(Box<Restoration>),
+}
+
+impl Pending {
+    fn is_restoration(&self) -> bool {
+        matches!(self, Self::Restoration(_))
+    }
 }
 
 /// What a generation of requests asks for. The cursor only orders the work, unless something is looked at that is
@@ -217,10 +222,10 @@ impl Session {
     pub fn apply(&mut self, command: Command) {
         let cursor = self.playback.cursor;
         self.message = None;
-        if goes_elsewhere(&command) {
+        if command.leaves() {
             self.awaiting_failure = None;
         }
-        if self.opened().is_some() || !waits_for_episode(&command) {
+        if self.opened().is_some() || command.needs() == Needs::Nothing {
             self.perform(command);
         } else if !self.is_busy() {
             self.complain("no episode is open".to_owned());
@@ -388,7 +393,8 @@ impl Session {
                 }
             }
         } else if done {
-            self.pending.clear();
+            // What a state string says of every episode waits for one that can be read.
+            self.pending.retain(Pending::is_restoration);
         }
         true
     }
@@ -457,56 +463,4 @@ impl Drop for Session {
             let _ = worker.join();
         }
     }
-}
-
-/// Whether a command goes to another place, so that nobody wants to be taken away from there later.
-fn goes_elsewhere(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::Step(_)
-            | Command::SeekTo(_)
-            | Command::SeekClamped(_)
-            | Command::First
-            | Command::Last
-            | Command::FirstPredicted
-            | Command::Event(_)
-            | Command::Episode(_)
-            | Command::SelectEpisode(_)
-            | Command::SelectModel(_)
-            | Command::Restore(_)
-    )
-}
-
-/// Whether a command is about a step of the episode that is shown.
-fn is_of_a_step(command: &Command) -> bool {
-    matches!(
-        command,
-        Command::Step(_)
-            | Command::SeekTo(_)
-            | Command::SeekClamped(_)
-            | Command::Event(_)
-            | Command::ToggleMark
-            | Command::Select
-    )
-}
-
-/// Whether a command needs to know the episode's steps.
-fn waits_for_episode(command: &Command) -> bool {
-    !matches!(
-        command,
-        Command::TogglePlay
-            | Command::Speed(_)
-            | Command::SetSpeed(_)
-            | Command::CycleLoop
-            | Command::Episode(_)
-            | Command::SelectEpisode(_)
-            | Command::SelectModel(_)
-            | Command::CompareWith(_)
-            | Command::Failure(_)
-            | Command::CycleFailureOrder
-            | Command::RankBy(_)
-            | Command::SortBy(_)
-            | Command::Filter(_)
-            | Command::Restore(_)
-    )
 }

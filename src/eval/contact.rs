@@ -5,7 +5,6 @@ use crate::measure::events::{contact_newtons, onsets};
 use crate::measure::fusion::{mean_share, position_shares, precision_shares};
 use crate::modality::Expert;
 use crate::model::config::Config;
-use crate::model::filter::factors;
 use crate::model::probe::Probe;
 use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace};
 use serde::Serialize;
@@ -26,22 +25,14 @@ pub(super) fn shares(
     beliefs: &BeliefTrace,
     probe: Option<&Probe>,
 ) -> Option<Vec<Vec<f32>>> {
-    if !config.prior_expert && config.experts.len() < 2 {
+    if !config.has_product() {
         return None;
     }
     let at = |belief: usize| {
-        let rows = experts.experts.iter().map(|expert| expert.row(belief).1);
-        let log_vars: Vec<&[f32]> = rows.chain([beliefs.prior.row(belief).1]).collect();
-        let mut alphas = alphas.row(belief).to_vec();
-        factors(&mut alphas, config.switches(), config.prior_expert);
-        let shares = precision_shares(&alphas, &log_vars);
-        let variance: Vec<f32> = beliefs
-            .posterior
-            .row(belief)
-            .1
-            .iter()
-            .map(|v| v.exp())
-            .collect();
+        let factors = beliefs.factors(experts, alphas, config.prior_expert, belief);
+        let shares = precision_shares(&factors);
+        let (_, log_var) = beliefs.posterior.row(belief);
+        let variance: Vec<f32> = log_var.iter().map(|v| v.exp()).collect();
         probe
             .and_then(|probe| position_shares(&shares, &probe.weights, &variance))
             .unwrap_or_else(|| shares.iter().map(|share| mean_share(share)).collect())
@@ -70,10 +61,10 @@ pub struct Aligned {
 /// The first belief of an episode is left out: its prior is the fixed N(0, 20 I), not the dynamics, and would pass for a
 /// prior that knows nothing before contact. So is an episode that starts in contact.
 pub fn aligned(contest: &Contest, all: &[EpisodeScores]) -> (f32, Vec<Aligned>) {
-    let peak = |e: &EpisodeScores| e.force_newtons.iter().copied().fold(0.0, f32::max);
+    let peak = |e: &EpisodeScores| e.force_newtons.iter().copied().reduce(f32::max);
     let of = |c: &Candidate| c.contact_newtons.filter(|&newtons| newtons > 0.0);
     let known = contest.candidates.iter().find_map(of);
-    let threshold = known.unwrap_or_else(|| contact_newtons(all.iter().map(peak).collect()));
+    let threshold = known.unwrap_or_else(|| contact_newtons(all.iter().filter_map(peak).collect()));
     let first: Vec<Option<usize>> = all
         .iter()
         .map(|e| {

@@ -4,7 +4,7 @@
 use candle_core::Result;
 use serde::{Deserialize, Serialize};
 
-use super::prediction::{roll, squared_error};
+use super::prediction::{roll, squared_error, start};
 use super::protocol::Protocol;
 use super::score::Scorer;
 use crate::episode::Episode;
@@ -94,11 +94,10 @@ fn position_nll(
 ) -> Option<f64> {
     let probe = scorer.probe.as_ref()?;
     let poses = episode.object.as_ref()?;
-    let config = &scorer.inspector.model().config;
-    let from = protocol.context - config.frame_stack - 1;
-    let start = beliefs.posterior.row(from).1;
+    let from = start(&scorer.inspector, protocol).ok()?;
+    let log_var = beliefs.posterior.row(from).1;
     let mut sum = 0.0;
-    for (step, covariance) in rolled.covariances(start).enumerate() {
+    for (step, covariance) in rolled.covariances(log_var).enumerate() {
         let [x, y] = probe.position(rolled.gaussians.row(step).0);
         let truth = poses.get(protocol.context + step)?;
         let error = Error2 {

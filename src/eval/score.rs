@@ -14,6 +14,7 @@ use crate::measure::ssim::ssim;
 use crate::model::config::Config;
 use crate::model::inspect::Inspector;
 use crate::model::probe::{Probe, Regressors};
+use crate::model::trace::ExpertTrace;
 
 /// What the tables know of a trained model; its weights have no part in them.
 #[derive(Clone, Debug)]
@@ -181,7 +182,9 @@ pub fn score(
     episode: &Episode,
 ) -> Result<EpisodeScores> {
     let truth = targets(episode, protocol)?;
-    let row = |setting| row(scorer, setting, protocol, episode, &truth);
+    // What the sensors say does not depend on the switches.
+    let said = encode(&scorer.inspector, episode)?;
+    let row = |setting| row(scorer, setting, protocol, episode, &said, &truth);
     Ok(EpisodeScores {
         subjects: settings.iter().map(row).collect::<Result<_>>()?,
         ..trivial(&scorer.mean_frame, protocol, episode, &truth)
@@ -215,28 +218,30 @@ fn row(
     setting: &Setting,
     protocol: Protocol,
     episode: &Episode,
+    said: &ExpertTrace,
     truth: &[(Vec<f32>, usize)],
 ) -> Result<SubjectScores> {
     let inspector = &scorer.inspector;
     let config = &inspector.model().config;
     let damaged = setting.damage(episode);
-    let experts = encode(inspector, damaged.as_ref().unwrap_or(episode))?;
+    let damaged = damaged.map(|seen| encode(inspector, &seen)).transpose()?;
+    let experts = damaged.as_ref().unwrap_or(said);
     let alphas = setting.alphas(config, experts.controls.len() + 1);
-    let beliefs = inspector.filter(&experts, &alphas)?;
-    let rolled = roll(inspector, &experts, &beliefs, protocol)?;
+    let beliefs = inspector.filter(experts, &alphas)?;
+    let rolled = roll(inspector, experts, &beliefs, protocol)?;
     let pixels = inspector.decode_pixels(&rolled.gaussians.mean)?;
     let size = pixels.len() / protocol.horizon.max(1);
     let frames = FrameScores::of(pixels.chunks_exact(size.max(1)), truth);
     let as_trained = *setting == Setting::default();
     let credit = if as_trained && config.training.masks {
-        Some(credit::of(scorer, protocol, &experts, episode, truth)?)
+        Some(credit::of(scorer, protocol, experts, episode, truth)?)
     } else {
         None
     };
     let probe = scorer.probe.as_ref();
     Ok(SubjectScores {
         frames,
-        shares: shares(config, &alphas, &experts, &beliefs, probe),
+        shares: shares(config, &alphas, experts, &beliefs, probe),
         filtered: beliefs.posterior.mean,
         predicted: rolled.gaussians.mean,
         credit,

@@ -3,7 +3,8 @@
 use candle_core::Result;
 use serde::Serialize;
 
-use super::comparison::{Comparison, Means, Side, TRIVIAL, comparisons, once, sides, unasked};
+use super::claims::{comparisons, once, sides, unasked};
+use super::comparison::{Comparison, Means, Side, TRIVIAL};
 use super::contact::{self, Aligned};
 use super::protocol::Protocol;
 use super::regression::{self, PoseErrors};

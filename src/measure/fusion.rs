@@ -3,19 +3,21 @@
 //! With precisions `T_i = 1 / variance_i` and tempering `α_i`, the product has `T* = Σ α_i T_i`, and expert i's
 //! share in dimension d is `s_{i,d} = α_i T_{i,d} / T*_d`. The shares of a dimension add up to one.
 
+use super::gaussian::Factor;
+
 /// The precision share of each expert in each latent dimension: one row of Z an expert, each value in [0, 1].
 ///
-/// `log_vars[i]` holds expert i's Z log-variances and `alphas[i]` its α. A dimension in which no expert is active
-/// has shares of zero.
-pub fn precision_shares(alphas: &[f32], log_vars: &[&[f32]]) -> Vec<Vec<f32>> {
-    let latent = log_vars.iter().map(|row| row.len()).min().unwrap_or(0);
-    let mut shares: Vec<Vec<f32>> = log_vars.iter().map(|_| vec![0.0; latent]).collect();
+/// A dimension in which no expert is active has shares of zero.
+pub fn precision_shares(factors: &[Factor]) -> Vec<Vec<f32>> {
+    let sizes = factors.iter().map(|factor| factor.gaussian.log_var.len());
+    let latent = sizes.min().unwrap_or(0);
+    let mut shares: Vec<Vec<f32>> = factors.iter().map(|_| vec![0.0; latent]).collect();
     for d in 0..latent {
-        let precisions: Vec<f64> = alphas
-            .iter()
-            .zip(log_vars)
-            .map(|(&alpha, log_var)| f64::from(alpha) * (-f64::from(log_var[d])).exp())
-            .collect();
+        let precision = |factor: &Factor| {
+            let log_var = f64::from(factor.gaussian.log_var[d]);
+            f64::from(factor.alpha) * (-log_var).exp()
+        };
+        let precisions: Vec<f64> = factors.iter().map(precision).collect();
         let total: f64 = precisions.iter().sum();
         if total > 0.0 {
             for (share, precision) in shares.iter_mut().zip(precisions) {
@@ -61,18 +63,30 @@ pub fn position_shares(shares: &[Vec<f32>], weights: &[f32], variance: &[f32]) -
 mod tests {
     use proptest::prelude::*;
 
+    use super::super::gaussian::Gaussian;
     use super::*;
+
+    fn factor(log_var: &[f32], alpha: f32) -> Factor<'_> {
+        let mean = log_var;
+        Factor {
+            gaussian: Gaussian { mean, log_var },
+            alpha,
+        }
+    }
 
     #[test]
     fn a_twice_as_precise_expert_supplies_two_thirds() {
-        let shares = precision_shares(&[1.0, 1.0], &[&[0.0], &[-(2.0_f32.ln())]]);
+        let shares = precision_shares(&[factor(&[0.0], 1.0), factor(&[-(2.0_f32.ln())], 1.0)]);
         assert!((shares[0][0] - 1.0 / 3.0).abs() < 1e-6);
         assert!((shares[1][0] - 2.0 / 3.0).abs() < 1e-6);
     }
 
     #[test]
     fn no_active_expert_supplies_nothing() {
-        assert_eq!(precision_shares(&[0.0], &[&[1.0, 2.0]]), [vec![0.0, 0.0]]);
+        assert_eq!(
+            precision_shares(&[factor(&[1.0, 2.0], 0.0)]),
+            [vec![0.0, 0.0]]
+        );
     }
 
     #[test]
@@ -92,8 +106,12 @@ mod tests {
                 .prop_filter("one is on", |alphas| alphas.iter().any(|&a| a > 0.0)),
             log_vars in prop::collection::vec(prop::collection::vec(-8.0_f32..8.0, 4), 3),
         ) {
-            let rows: Vec<&[f32]> = log_vars.iter().map(Vec::as_slice).collect();
-            let shares = precision_shares(&alphas, &rows);
+            let factors: Vec<Factor> = log_vars
+                .iter()
+                .zip(alphas)
+                .map(|(log_var, alpha)| factor(log_var, alpha))
+                .collect();
+            let shares = precision_shares(&factors);
             for d in 0..4 {
                 let sum: f32 = shares.iter().map(|s| s[d]).sum();
                 prop_assert!((sum - 1.0).abs() < 1e-5);

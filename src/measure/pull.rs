@@ -94,9 +94,7 @@ mod tests {
             let (prior, sensors) = factors.split_last().unwrap();
             let full = product(&factors).unwrap();
             let arrows = pulls(sensors, *prior, &weights).unwrap();
-            let alphas: Vec<f32> = factors.iter().map(|f| f.alpha).collect();
-            let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
-            let shares = precision_shares(&alphas, &log_vars);
+            let shares = precision_shares(&factors);
             for ((arrow, share), sensor) in arrows.iter().zip(&shares).zip(sensors) {
                 let x: f32 = (0..5)
                     .map(|d| weights[d] * share[d] * (sensor.gaussian.mean[d] - prior.gaussian.mean[d]))

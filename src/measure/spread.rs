@@ -90,6 +90,16 @@ pub fn sample_covariance(points: &[[f32; 2]]) -> Option<[f32; 3]> {
     Some(sums.map(|sum| (sum / (count - 1.0)) as f32))
 }
 
+/// The distance that a covariance xx, xy, yy of the plane claims, as the root of its mean square: `√(xx + yy)`.
+pub fn distance_sigma([xx, _, yy]: [f32; 3]) -> f32 {
+    (xx + yy).max(0.0).sqrt()
+}
+
+/// Its standard deviations along x and y.
+pub fn axis_sigmas([xx, _, yy]: [f32; 3]) -> [f32; 2] {
+    [xx, yy].map(|variance| variance.max(0.0).sqrt())
+}
+
 #[cfg(test)]
 #[expect(clippy::unwrap_used, reason = "a test may stop here")]
 mod tests {

@@ -87,6 +87,11 @@ impl Config {
         self.experts.len() + 1
     }
 
+    /// Whether a belief is a product, of which an expert can be left out.
+    pub fn has_product(&self) -> bool {
+        self.experts.len() + usize::from(self.prior_expert) > 1
+    }
+
     /// The sets of sensor experts it is trained on, with the prior always in.
     pub fn trained_sets(&self) -> Vec<ExpertSet> {
         let all = ExpertSet::full(self.experts.len());

@@ -6,6 +6,7 @@ use super::dynamics::{Dynamics, FIRST_VARIANCE};
 use super::fallback;
 use super::gaussian::DiagGaussian;
 use super::kernel::recurrence::{Kept, Recurrence, Row};
+use super::trace::count_prior;
 
 /// Beliefs over an episode. Every tensor is `(B, T, …)`.
 #[derive(Clone, Debug)]
@@ -33,18 +34,6 @@ pub struct Inputs<'a> {
     pub noise: Option<&'a Tensor>,
 }
 
-/// The factors that experts are multiplied in with, made of `alphas`, the prior last in each row of `switches`. Where
-/// `prior_expert` is off the prior is stated but not multiplied in, unless no sensor is: it is all there is to believe.
-pub fn factors(alphas: &mut [f32], switches: usize, prior_expert: bool) {
-    if prior_expert {
-        return;
-    }
-    for row in alphas.chunks_exact_mut(switches) {
-        let (sensors, prior) = row.split_at_mut(switches - 1);
-        prior[0] = f32::from(sensors.iter().all(|&alpha| alpha == 0.0));
-    }
-}
-
 /// Beliefs for every step. Where `prior_expert` is off the prior is multiplied in only where no sensor is.
 pub fn filter(
     dynamics: &Dynamics,
@@ -54,7 +43,7 @@ pub fn filter(
 ) -> Result<Filtered> {
     let (batch, steps, switches) = inputs.alphas.dims3()?;
     let mut alphas = inputs.alphas.flatten_all()?.to_vec1()?;
-    factors(&mut alphas, switches, prior_expert);
+    count_prior(&mut alphas, switches, prior_expert);
     if weights.device().is_cpu() {
         return on_cpu(dynamics, weights, inputs, alphas);
     }

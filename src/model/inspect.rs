@@ -7,12 +7,11 @@ use std::borrow::Borrow;
 use candle_core::{Device, Result, Tensor};
 
 use super::dynamics::FIRST_VARIANCE;
-use super::filter;
 use super::gaussian::DiagGaussian;
 use super::kernel::read;
 use super::kernel::recurrence::{self, Row};
 use super::observation::Observations;
-use super::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace};
+use super::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace, count_prior};
 use super::{Model, Weights};
 use crate::episode::Frame;
 
@@ -26,7 +25,7 @@ pub struct Inspector<M = Model> {
 /// Samples that go through a network at once: its layers hold no more than these, however long an episode is.
 const BLOCK: usize = 64;
 
-/// `(1, n, Z)` or `(n, Z)` Gaussians as numbers.
+/// Gaussians `(n, Z)` as numbers.
 fn trace(gaussian: &DiagGaussian, latent: usize) -> Result<GaussianTrace> {
     Ok(GaussianTrace {
         latent,
@@ -136,7 +135,7 @@ impl<M: Borrow<Model>> Inspector<M> {
         for setting in settings {
             alphas.extend_from_slice(&setting.values);
         }
-        filter::factors(&mut alphas, switches, config.prior_expert);
+        count_prior(&mut alphas, switches, config.prior_expert);
         let inputs = recurrence::Inputs {
             steps: beliefs,
             experts: experts

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::measure::gaussian::{Factor, Gaussian};
 use crate::measure::spread::{diagonal, propagate};
 
 /// A run of diagonal Gaussians over the latent, one a belief; row major `(beliefs, Z)`.
@@ -31,6 +32,12 @@ impl GaussianTrace {
         let range = i * self.latent..(i + 1) * self.latent;
         (&self.mean[range.clone()], &self.log_var[range])
     }
+
+    /// Belief `i`.
+    pub fn gaussian(&self, i: usize) -> Gaussian<'_> {
+        let (mean, log_var) = self.row(i);
+        Gaussian { mean, log_var }
+    }
 }
 
 /// What each sensor expert of a model says of an episode; it does not depend on the switches.
@@ -52,6 +59,39 @@ pub struct BeliefTrace {
     /// Hidden state of the recurrent network after each belief's transition, `(beliefs, hidden)`; row i has seen
     /// belief i - 1.
     pub hidden: Vec<f32>,
+}
+
+impl BeliefTrace {
+    /// What is multiplied at belief `i`: the sensor experts and the prior last, each with the α it counts with.
+    pub fn factors<'a>(
+        &'a self,
+        experts: &'a ExpertTrace,
+        alphas: &Alphas,
+        prior_expert: bool,
+        i: usize,
+    ) -> Vec<Factor<'a>> {
+        let mut alphas = alphas.row(i).to_vec();
+        let switches = alphas.len();
+        count_prior(&mut alphas, switches, prior_expert);
+        let all = experts.experts.iter().chain([&self.prior]).zip(alphas);
+        all.map(|(gaussians, alpha)| Factor {
+            gaussian: gaussians.gaussian(i),
+            alpha,
+        })
+        .collect()
+    }
+}
+
+/// Sets the α that the prior counts with, the last in each row of `switches`. Where `prior_expert` is off the prior is
+/// stated but not multiplied in, unless no sensor is: it is all there is to believe.
+pub fn count_prior(alphas: &mut [f32], switches: usize, prior_expert: bool) {
+    if prior_expert {
+        return;
+    }
+    for row in alphas.chunks_exact_mut(switches) {
+        let (sensors, prior) = row.split_at_mut(switches - 1);
+        prior[0] = f32::from(sensors.iter().all(|&alpha| alpha == 0.0));
+    }
 }
 
 /// The prior alone, from a belief on: one row a control.

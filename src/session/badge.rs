@@ -1,8 +1,8 @@
 //! Whether a model was trained on what the switches say.
 
 use super::snapshot::{Badge, ModelInfo};
-use super::switches::Switches;
 use crate::modality::{Expert, ExpertSet};
+use crate::model::switches::Switches;
 
 /// Whether the model was trained on the switches of the steps `first..=step`: the belief at `step` has come through all
 /// of them. Says at which step they were not, where that is an earlier one.
@@ -84,8 +84,8 @@ fn set_name(model: &ModelInfo, is_member: &dyn Fn(usize) -> bool) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::model::switches::Reach;
     use crate::session::command::Scope;
-    use crate::session::switches::Reach;
 
     fn vhp(prior_expert: bool) -> ModelInfo {
         ModelInfo {
@@ -120,7 +120,7 @@ mod tests {
     #[test]
     fn a_belief_depends_on_the_switches_of_earlier_steps() {
         let (model, mut switches) = (vhp(true), Switches::default());
-        switches.set(Expert::Vision, Reach::of(Scope::Frame, 4), 0.5);
+        switches.set(Expert::Vision, Scope::Frame.reach(4), 0.5);
         assert_eq!(badge(&model, &switches, 1, 3), Badge::Trained);
         let why = |why: &str| Badge::Untrained(why.to_owned());
         assert_eq!(badge(&model, &switches, 1, 4), why("vision α 0.5"));

@@ -8,6 +8,7 @@ use crate::measure::corruption::Corruption;
 use crate::measure::failure::Order;
 use crate::measure::protocol::Protocol;
 use crate::modality::Modality;
+use crate::model::switches::Reach;
 
 /// How far a switch reaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +21,18 @@ pub enum Scope {
     Onward,
     /// The step under the cursor only.
     Frame,
+}
+
+impl Scope {
+    /// The steps it means at a step.
+    pub fn reach(self, step: usize) -> Reach {
+        let until = match self {
+            Self::Episode => return Reach::EPISODE,
+            Self::Onward => None,
+            Self::Frame => Some(step + 1),
+        };
+        Reach { from: step, until }
+    }
 }
 
 /// What playback does at the end.
@@ -152,4 +165,88 @@ pub enum Command {
     Redo,
     /// Restore what a state string says.
     Restore(String),
+}
+
+/// What a command needs of the episode that is shown.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing: it is carried out at once.
+    Nothing,
+    /// That it is there; where another one is gone to meanwhile, that one.
+    Episode,
+    /// That it is there, and the very one: it is about one of its steps.
+    Step,
+}
+
+impl Command {
+    /// What it needs.
+    pub fn needs(&self) -> Needs {
+        match self {
+            Self::TogglePlay
+            | Self::Speed(_)
+            | Self::SetSpeed(_)
+            | Self::CycleLoop
+            | Self::Episode(_)
+            | Self::SelectEpisode(_)
+            | Self::SelectModel(_)
+            | Self::CompareWith(_)
+            | Self::Failure(_)
+            | Self::CycleFailureOrder
+            | Self::RankBy(_)
+            | Self::SortBy(_)
+            | Self::Filter(_)
+            | Self::Restore(_) => Needs::Nothing,
+            Self::Step(_)
+            | Self::SeekTo(_)
+            | Self::SeekClamped(_)
+            | Self::Event(_)
+            | Self::ToggleMark
+            | Self::Select
+            | Self::PredictHere => Needs::Step,
+            Self::First
+            | Self::Last
+            | Self::FirstPredicted
+            | Self::Oddity
+            | Self::ToggleExpert(_)
+            | Self::SwitchExpert { .. }
+            | Self::Solo(_)
+            | Self::AllOn
+            | Self::SetAlpha { .. }
+            | Self::Temper { .. }
+            | Self::CycleScope
+            | Self::SetScope(_)
+            | Self::UseSet(_)
+            | Self::Corrupt { .. }
+            | Self::EditControls(_)
+            | Self::ToggleSamples
+            | Self::ShowSamples(_)
+            | Self::SetSamples(_)
+            | Self::SetSeed(_)
+            | Self::SetContext(_)
+            | Self::SetHorizon(_)
+            | Self::Predict(_)
+            | Self::Context(_)
+            | Self::Horizon(_)
+            | Self::Undo
+            | Self::Redo => Needs::Episode,
+        }
+    }
+
+    /// Whether it goes to another place, so that nobody wants to be taken away from there later.
+    pub fn leaves(&self) -> bool {
+        matches!(
+            self,
+            Self::Step(_)
+                | Self::SeekTo(_)
+                | Self::SeekClamped(_)
+                | Self::First
+                | Self::Last
+                | Self::FirstPredicted
+                | Self::Event(_)
+                | Self::Episode(_)
+                | Self::SelectEpisode(_)
+                | Self::SelectModel(_)
+                | Self::Restore(_)
+        )
+    }
 }

@@ -3,9 +3,9 @@
 use super::Session;
 use super::fusing::Refusal;
 use super::settings::{ControlEdit, SAMPLES, SCALES};
-use super::switches::Reach;
 use crate::measure::corruption::{Corruption, applies};
 use crate::modality::{Expert, Modality};
+use crate::model::switches::Reach;
 
 impl Session {
     /// Exactly these experts as trained, in the whole episode.
@@ -22,7 +22,11 @@ impl Session {
         }
         let on = |i: usize| active.get(i).copied().unwrap_or(false);
         if !(0..factors.len()).any(on) {
-            return Err("a belief needs an expert".to_owned());
+            return Err(if on(factors.len()) {
+                format!("{name} does not multiply its prior in: it cannot be switched")
+            } else {
+                "a belief needs an expert".to_owned()
+            });
         }
         for (i, &expert) in factors.iter().enumerate() {
             let alpha = f32::from(u8::from(on(i)));

@@ -4,9 +4,9 @@
 
 use super::command::Scope;
 use super::snapshot::ModelInfo;
-use super::switches::{Reach, Switches, checked_alpha};
 use crate::modality::Expert;
-use crate::model::trace::Alphas;
+use crate::model::switches::{Reach, Switches, checked_alpha};
+use crate::model::trace::{Alphas, count_prior};
 
 /// A line that says why not.
 pub type Refusal = String;
@@ -48,15 +48,27 @@ impl ModelInfo {
 
     /// The same for the filter, `(beliefs, M)`: the first belief is at step `frame_stack`.
     pub fn alphas(&self, switches: &Switches, beliefs: usize) -> Alphas {
-        let experts = self.all_experts();
+        let mut own = switches.clone();
+        own.retain(|expert| self.can_switch(expert));
         let steps = self.frame_stack..self.frame_stack + beliefs;
-        let values = steps
-            .flat_map(|step| experts.iter().map(move |&e| self.alpha(switches, e, step)))
-            .collect();
-        Alphas {
-            experts: experts.len(),
-            values,
-        }
+        own.alphas(&self.all_experts(), steps)
+    }
+
+    /// α that each expert counts with at a step, the prior last: where that is no factor, 0 but beside no sensor.
+    pub fn counted(&self, switches: &Switches, step: usize) -> Vec<f32> {
+        let experts = self.all_experts();
+        let own = experts
+            .iter()
+            .map(|&expert| self.alpha(switches, expert, step));
+        let mut alphas: Vec<f32> = own.collect();
+        count_prior(&mut alphas, experts.len(), self.prior_expert);
+        alphas
+    }
+
+    /// The first step whose belief would be left without any expert. Where the prior is no factor it is what is left.
+    pub fn silent_step(&self, switches: &Switches) -> Option<usize> {
+        let silent = || switches.silent_step(&self.factors(), self.frame_stack);
+        self.prior_expert.then(silent).flatten()
     }
 }
 
@@ -71,7 +83,7 @@ pub struct Place {
 
 impl Place {
     fn reach(self) -> Reach {
-        Reach::of(self.scope, self.step)
+        self.scope.reach(self.step)
     }
 
     fn words(self) -> String {
@@ -218,7 +230,7 @@ fn accept(
     changed: Switches,
     name: &str,
 ) -> Result<(), Refusal> {
-    if let Some(step) = changed.first_silent_step(&model.factors()) {
+    if let Some(step) = model.silent_step(&changed) {
         return Err(format!(
             "{name} stays on: it is the last active expert at step {}, and a belief needs one",
             step + 1
@@ -300,6 +312,17 @@ mod tests {
             "prior stays on: it is the last active expert at step 5, and a belief needs one"
         );
         assert_eq!(switches, before);
+    }
+
+    #[test]
+    fn where_the_prior_is_no_factor_it_is_what_is_left() {
+        let model = model(&[Expert::Vision, Expert::Joint], false, &[3]);
+        let mut switches = Switches::default();
+        assert_eq!(model.counted(&switches, 4), [1.0, 1.0, 0.0]);
+        toggle(&model, &mut switches, EVERYWHERE, 0).unwrap();
+        toggle(&model, &mut switches, EVERYWHERE, 1).unwrap();
+        assert_eq!(model.counted(&switches, 4), [0.0, 0.0, 1.0]);
+        assert!(toggle(&model, &mut switches, EVERYWHERE, 2).is_err());
     }
 
     #[test]

@@ -2,15 +2,15 @@
 
 use std::sync::Arc;
 
-use super::command::{Command, Looping, Scope};
+use super::command::{Command, Looping, Needs, Scope};
 use super::fusing::{self, Place, Refusal};
 use super::settings::Settings;
 use super::snapshot::ModelInfo;
-use super::switches::{Reach, Switches};
 use super::worker::Target;
-use super::{Pending, Session, is_of_a_step};
+use super::{Pending, Session};
 use crate::measure::protocol::Protocol;
 use crate::modality::Expert;
+use crate::model::switches::{Reach, Switches};
 
 impl Session {
     /// Carries out a command whose episode is there if it needs one.
@@ -176,6 +176,7 @@ impl Session {
     pub(super) fn go_to(&mut self, target: Target) {
         if target.episode != self.target.episode {
             self.forget_steps();
+            self.playback.forget_selection();
             self.oddity = 0;
         }
         self.target = target;
@@ -186,7 +187,7 @@ impl Session {
     fn forget_steps(&mut self) {
         self.pending.retain(|pending| match pending {
             Pending::Seek(_) => false,
-            Pending::Command(command) => !is_of_a_step(command),
+            Pending::Command(command) => command.needs() != Needs::Step,
             // Its settings are of every episode; what it says of steps it keeps to its own.
             Pending::Restoration(_) => true,
         });
@@ -229,7 +230,7 @@ impl Session {
     fn is_silent(&self) -> bool {
         let switches = &self.settings.switches;
         self.model()
-            .is_some_and(|m| m.has_product() && switches.first_silent_step(&m.factors()).is_some())
+            .is_some_and(|model| model.silent_step(switches).is_some())
     }
 
     /// Switches every expert on where the model is silent, and says so. No change of its own: on the way through what

@@ -153,11 +153,7 @@ impl Session {
                 .find(of_none)
                 .map(|expert| format!("alpha: no model here has the expert {}", expert.name())),
         );
-        let silent = self
-            .model()
-            .filter(|model| model.has_product())
-            .and_then(|model| switches.first_silent_step(&model.factors()));
-        match silent {
+        match self.model().and_then(|model| model.silent_step(switches)) {
             Some(step) => complaints.push(format!(
                 "alpha: leaves no active expert at step {}",
                 step + 1

@@ -6,10 +6,10 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 
 use super::command::Scope;
-use super::switches::Switches;
 use crate::measure::corruption::Corruption;
 use crate::measure::protocol::Protocol;
 use crate::modality::Modality;
+use crate::model::switches::Switches;
 
 /// So many samples at least, for a covariance, and at most: more tell nothing new and take their time.
 pub const SAMPLES: RangeInclusive<usize> = 2..=256;

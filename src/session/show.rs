@@ -12,9 +12,7 @@ use super::snapshot::{
 };
 use super::worker::{Answer, Inferred, Opened, Pictures};
 use crate::episode::{EpisodeSource, Frame};
-use crate::measure::frame::signed_difference;
 use crate::measure::fusion::mean_share;
-use crate::modality::Expert;
 
 impl Session {
     /// Context and horizon fitted to the present episode.
@@ -139,11 +137,13 @@ impl Session {
             return Vec::new();
         };
         let step = self.playback.cursor.max(model.frame_stack);
+        let alphas = model.counted(&self.settings.switches, step);
         let at_cursor = inferred.zip(self.playback.cursor.checked_sub(model.frame_stack));
         let shares = at_cursor.map(|(inferred, belief)| inferred.shares(belief));
-        let position = at_cursor.and_then(|(inferred, belief)| {
+        let position = at_cursor.zip(shares.as_ref());
+        let position = position.and_then(|((inferred, belief), shares)| {
             let weights = self.position_weights.get(self.target.model)?.as_deref()?;
-            inferred.position_shares(belief, weights)
+            inferred.position_shares(belief, shares, weights)
         });
         let view = |(i, expert)| {
             let share: Vec<f32> = shares
@@ -152,12 +152,7 @@ impl Session {
                 .unwrap_or_default();
             ExpertView {
                 expert,
-                alpha: if expert == Expert::Prior && !model.prior_expert {
-                    // It is stated, and not multiplied in.
-                    0.0
-                } else {
-                    model.alpha(&self.settings.switches, expert, step)
-                },
+                alpha: alphas[i],
                 latent: at_cursor.map(|(inferred, belief)| {
                     let sensors = inferred.trace.experts.get(i);
                     let gaussians = sensors.unwrap_or(&inferred.beliefs.prior);
@@ -223,7 +218,7 @@ fn frame_row(pictures: &Pictures, cursor: usize) -> FrameRow {
         truth: Some(Arc::clone(&cell.truth)),
         belief: cell.belief.clone(),
         prediction: cell.prediction.clone(),
-        error: compared.and_then(|frame| signed_frame(frame, &cell.truth)),
+        error: compared.and_then(|frame| difference(frame, &cell.truth)),
         error_of,
         input: None,
     }
@@ -236,13 +231,8 @@ fn input(answer: &Answer, cursor: usize) -> Option<Arc<Frame>> {
     (input != truth).then(|| Arc::clone(input))
 }
 
-fn signed_frame(frame: &Frame, truth: &Frame) -> Option<Arc<SignedFrame>> {
-    let values = signed_difference(frame, truth)?;
-    Some(Arc::new(SignedFrame {
-        width: frame.width,
-        height: frame.height,
-        values,
-    }))
+fn difference(shown: &Frame, truth: &Frame) -> Option<Arc<SignedFrame>> {
+    SignedFrame::between(shown, truth).map(Arc::new)
 }
 
 fn position_view(opened: &Opened, pictures: &Pictures, cursor: usize) -> Option<PositionView> {
@@ -277,7 +267,7 @@ fn other_view(answer: &Answer, cursor: usize, badge: Badge) -> Option<OtherView>
     Some(OtherView {
         model: other.model,
         frames: frame_row(&other.pictures, cursor),
-        difference: pair.and_then(|(own, beside)| signed_frame(own, beside)),
+        difference: pair.and_then(|(own, beside)| difference(own, beside)),
         strip: Arc::clone(&other.pictures.strip),
         position: position_view(answer.opened.as_ref()?, &other.pictures, cursor),
         psnr_db: Arc::clone(&other.pictures.psnr_db),

@@ -18,6 +18,7 @@ use super::settings::{ControlEdit, Sampling};
 use crate::episode::{Frame, PlanarPose, Split};
 use crate::measure::calibration::Error2;
 use crate::measure::corruption::Corruption;
+use crate::measure::frame::signed_difference;
 use crate::modality::{Expert, ExpertSet, Modality};
 use board::BoardView;
 use lattice::LatticeView;
@@ -247,6 +248,17 @@ pub struct SignedFrame {
     pub height: usize,
     /// Grey levels, -255 to 255, row major.
     pub values: Vec<i16>,
+}
+
+impl SignedFrame {
+    /// An image minus the truth; none where the sizes differ.
+    pub fn between(shown: &Frame, truth: &Frame) -> Option<Self> {
+        Some(Self {
+            width: shown.width,
+            height: shown.height,
+            values: signed_difference(shown, truth)?,
+        })
+    }
 }
 
 /// One step of a row of frames.

@@ -35,10 +35,10 @@ use std::ops::RangeInclusive;
 
 use super::command::{Looping, Scope};
 use super::settings::{ControlEdit, SAMPLES, Sampling};
-use super::switches::Switches;
 use crate::measure::corruption::Corruption;
 use crate::measure::failure::Order;
 use crate::modality::Modality;
+use crate::model::switches::Switches;
 use escape::{escape, unescape};
 use names::{LOOPINGS, SCOPES, count, name_of, one_of};
 

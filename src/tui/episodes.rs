@@ -1,8 +1,8 @@
 //! Every episode over the whole screen, with what the model makes of it: sorted, filtered, to be chosen from.
 //!
 //! ```text
-//! episodes                                    24 of 24  filter: none
-//!    # id          split steps error        RMSE▼  dist  gain  NEES confl  esc  !
+//! episodes                                    24 of 24
+//!    # id          split steps error        RMSE▼    cm  gain  NEES confl  esc  !
 //!    1 push-00000  test     16 ▁▂▃▄▅▆▇█▇▆    7.1   1.2     –   3.1  44.0    9  ·
 //! ▸  3 push-00002  test     16 ▁▁▁▂▂▃▃▄▄▄    5.0   0.9     –   1.1  31.2    –  ·
 //! scored 20/24  failures by error: 3 of 20               ⏎ open  / filter  < > sort  o order

@@ -1,7 +1,7 @@
 //! What can be chosen while a line is typed, over the lower part of the screen.
 //!
 //! ```text
-//! commands ──────────────────────────────────────── 3 of 118, ↑ ↓ choose, Tab completes
+//! commands ──────────────────────────────────────── 3 of 118, ↑ ↓ choose, Tab completes, Esc closes
 //! ▸ corrupt vision noise   damage an input; none mends it                             x
 //!   corrupt vision none    damage an input; none mends it                             x
 //! :corrupt vi▏

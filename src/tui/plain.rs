@@ -17,6 +17,7 @@ mod sets;
 
 use std::fmt::{Display, Write};
 
+use crate::measure::spread::axis_sigmas;
 use crate::session::command::Scope;
 use crate::session::model_key;
 use crate::session::snapshot::{
@@ -205,7 +206,7 @@ fn position(report: &mut Report, position: Option<&PositionView>, cursor: usize)
         let estimate: Option<Estimate> = estimate_at(estimates, cursor);
         let label = format!("position {name}");
         report.place(&label, estimate.map(|it| [it.x, it.y]));
-        let sigma = estimate.map(|it| [it.covariance[0].sqrt(), it.covariance[2].sqrt()]);
+        let sigma = estimate.map(|it| axis_sigmas(it.covariance));
         report.place(&format!("{label} sigma"), sigma);
         let error = error.map(|metres| metres * 100.0);
         report.number(&format!("{label} error"), error, "cm");

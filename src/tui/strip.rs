@@ -21,9 +21,8 @@ use super::predict::edited;
 use super::theme::{PREDICTION, dim, strong};
 use super::view::{Pane, View};
 use super::words;
-use crate::episode::Frame;
 use crate::measure::frame::ERROR_RANGE;
-use crate::session::snapshot::{Snapshot, StripCell};
+use crate::session::snapshot::{SignedFrame, Snapshot, StripCell};
 
 /// Columns of the labels.
 const LABELS: u16 = 12;
@@ -162,7 +161,7 @@ impl Grid {
                     put(buf, pane, at + self.side, row, '│', strong());
                 }
             }
-            let Some(cell) = snapshot.strip.iter().find(|cell| cell.step == step) else {
+            let Some(cell) = snapshot.strip.get(step) else {
                 continue;
             };
             for (i, row) in self.rows.iter().enumerate() {
@@ -245,27 +244,13 @@ impl Row {
             Self::Belief => cell.belief.as_ref(),
             Self::Prediction => cell.prediction.as_ref(),
             Self::Model => model.as_ref(),
-            Self::Error => return difference(model.as_ref()?, &cell.truth),
+            Self::Error => {
+                let difference = SignedFrame::between(model.as_ref()?, &cell.truth)?;
+                return Some(Raster::from(&difference));
+            }
         };
         frame.map(|frame| Raster::from(&**frame))
     }
-}
-
-/// An image minus the truth, as colours show it; none where the sizes differ.
-fn difference(shown: &Frame, truth: &Frame) -> Option<Raster> {
-    let same = (shown.width, shown.height) == (truth.width, truth.height);
-    let signed = |(&a, &b): (&u8, &u8)| {
-        let part = (f32::from(a) - f32::from(b)) / (255.0 * ERROR_RANGE);
-        part.clamp(-1.0, 1.0)
-    };
-    same.then(|| Raster {
-        width: shown.width,
-        height: shown.height,
-        values: std::iter::zip(&shown.pixels, &truth.pixels)
-            .map(signed)
-            .collect(),
-        signed: true,
-    })
 }
 
 fn every_text(every: usize) -> String {

@@ -362,7 +362,7 @@ fn switches_and_damage_stand_beside_the_models_as_trained() {
             "leaves no expert of model `vhp` on",
         ),
         ("episode=x", "switches and damages nothing"),
-        ("alpha=concat:0", "no model has these experts"),
+        ("alpha=concat:0", "no model multiplies these experts"),
         (
             "alpha=vision:0,joint:0,prior:0",
             "leaves no expert of model `vhp` on",

@@ -55,19 +55,30 @@ impl Recipe {
         near && self.config == other.config && self.data_hash == other.data_hash
     }
 
-    /// The preset of its training; the unit of force is the dataset's matter, and epochs are what updates count.
+    /// The preset of its sizes and its training; channels and their units are the dataset's matter, and epochs are what
+    /// updates count.
     fn preset(&self) -> Option<Preset> {
         if !self.config.name.is_empty() {
             return None;
         }
-        let own = &self.config.training;
+        let own = &self.config;
         Preset::ALL.into_iter().find(|&preset| {
-            let Some(mut config) = Config::preset("v", preset) else {
+            let Some(config) = Config::preset("v", preset) else {
                 return false;
             };
-            config.training.force_scale = own.force_scale;
-            config.training.epochs = own.epochs;
-            config.training == *own
+            // What the name says, and what the data is like.
+            let mut same = Config {
+                name: own.name.clone(),
+                experts: own.experts.clone(),
+                prior_expert: own.prior_expert,
+                window: own.window,
+                haptic: own.haptic.clone(),
+                proprio: own.proprio.clone(),
+                ..config
+            };
+            same.training.force_scale = own.training.force_scale;
+            same.training.epochs = own.training.epochs;
+            same == *own
         })
     }
 
@@ -213,6 +224,10 @@ mod tests {
         let runs = [("v", Fast, 9, "runs/a"), ("v", Fast, 9, "runs/b")];
         assert_eq!(
             called(&runs, |config| config.training.kl_weight = 2.0),
+            ["v a", "v fast"]
+        );
+        assert_eq!(
+            called(&runs, |config| config.hidden = 64),
             ["v a", "v fast"]
         );
         // And a name that does not say what it is, is no recipe that others share.

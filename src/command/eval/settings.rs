@@ -3,8 +3,7 @@
 use anyhow::{Context, anyhow, bail};
 
 use crate::eval::score::{Candidate, Subject};
-use crate::eval::setting::{Setting, Tempered};
-use crate::modality::Expert;
+use crate::eval::setting::Setting;
 use crate::session::state::State;
 
 /// Every row.
@@ -12,7 +11,7 @@ pub fn subjects(candidates: &[Candidate], states: &[String]) -> anyhow::Result<V
     let mut settings = vec![Setting::default(), Setting::prior_off()];
     for text in states {
         let setting = read(text).with_context(|| format!("--state {text}"))?;
-        if !settings.contains(&setting) {
+        if !settings.iter().any(|known| known.is_like(&setting)) {
             settings.push(setting);
         }
     }
@@ -42,7 +41,10 @@ pub fn subjects(candidates: &[Candidate], states: &[String]) -> anyhow::Result<V
             });
         }
         if subjects.len() == before && *setting != Setting::prior_off() {
-            bail!("--state {}: no model has these experts", setting.name);
+            bail!(
+                "--state {}: no model multiplies these experts",
+                setting.name
+            );
         }
     }
     Ok(subjects)
@@ -60,20 +62,8 @@ fn read(text: &str) -> anyhow::Result<Setting> {
     if state.controls.is_some() {
         bail!("controls: a prediction from other controls has no truth to be scored by");
     }
-    let tempered: Vec<Tempered> = Expert::ALL
-        .into_iter()
-        .flat_map(|expert| {
-            let runs = state.switches.runs(expert).into_iter();
-            runs.map(move |run| Tempered {
-                expert,
-                from: run.reach.from,
-                until: run.reach.until,
-                alpha: run.alpha,
-            })
-        })
-        .collect();
     let mut counted = State {
-        switches: state.switches,
+        switches: state.switches.clone(),
         corruptions: state.corruptions.clone(),
         ..State::default()
     };
@@ -87,10 +77,10 @@ fn read(text: &str) -> anyhow::Result<Setting> {
             .split_once(';')
             .map_or("", |(_, name)| name)
             .to_owned(),
-        tempered,
+        switches: state.switches,
         damaged: state.corruptions.into_iter().collect(),
     };
-    if setting.tempered.is_empty() && setting.damaged.is_empty() {
+    if setting.is_like(&Setting::default()) {
         bail!("it switches and damages nothing; write alpha=haptic:0 or corrupt=vision:noise:0.5");
     }
     Ok(setting)

@@ -14,6 +14,7 @@ use crate::model::kernel::apply::Apply;
 use crate::model::kernel::cell::Cell;
 use crate::model::kernel::squared_error::SquaredError;
 use crate::model::network::Parameters;
+use crate::model::trace::count_prior;
 
 fn numbers(n: usize, seed: f32) -> Vec<f32> {
     (0..n)
@@ -224,7 +225,7 @@ fn filters_agree_forward_and_backward_and_without_the_prior_expert() -> Result<(
     for prior_expert in [true, false] {
         let weights = dynamics.network.folded()?;
         let ours = model_filter::filter(&dynamics, &weights, inputs, prior_expert)?;
-        model_filter::factors(&mut alphas, 3, prior_expert);
+        count_prior(&mut alphas, 3, prior_expert);
         let factors = Tensor::from_vec(alphas.clone(), shape, &Device::Cpu)?;
         let theirs = super::filter(&dynamics, &weights, inputs, &factors)?;
         let all = |f: &Filtered| {

@@ -7,7 +7,7 @@ use super::dataset::{TABLE_M, centre_of, square_at};
 use super::dynamics::{self, LATENT, STEP_VARIANCE};
 use crate::episode::{Episode, Frame, Layout};
 use crate::modality::{Expert, ExpertSet};
-use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace, Rolled};
+use crate::model::trace::{Alphas, BeliefTrace, ExpertTrace, GaussianTrace, Rolled, count_prior};
 use crate::session::predict::{PredictError, Predictor};
 use crate::session::snapshot::{Estimate, ModelInfo};
 
@@ -211,15 +211,16 @@ impl Predictor for FakePredictor {
         for i in 0..count {
             prior.mean.extend(mean);
             prior.log_var.extend(variance.map(f32::ln));
-            let alpha = alphas.row(i);
-            let prior_alpha =
-                alpha.last().copied().unwrap_or(1.0) * f32::from(u8::from(self.info.prior_expert));
+            let mut alpha = alphas.row(i).to_vec();
+            let switches = alpha.len();
+            count_prior(&mut alpha, switches, self.info.prior_expert);
+            let prior_alpha = alpha.last().copied().unwrap_or(1.0);
             for d in 0..LATENT {
                 let (mut precision, mut weighted) = (
                     prior_alpha / variance[d],
                     prior_alpha * mean[d] / variance[d],
                 );
-                for (expert, alpha) in trace.experts.iter().zip(alpha) {
+                for (expert, alpha) in trace.experts.iter().zip(&alpha) {
                     let (means, log_vars) = expert.row(i);
                     let share = alpha * (-log_vars[d]).exp();
                     precision += share;

@@ -25,7 +25,7 @@ pub struct LatticeCell {
     pub name: String,
     /// Whether the model was trained on it.
     pub trained: bool,
-    /// Whether the switches at the cursor are just this set.
+    /// Whether the switches are just this set, at every step.
     pub current: bool,
     /// The decoded belief, once decoded.
     pub frame: Option<Arc<Frame>>,

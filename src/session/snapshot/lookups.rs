@@ -2,7 +2,7 @@
 
 use crate::measure::corruption::{Corruption, Damage};
 use crate::modality::{Expert, Modality};
-use crate::session::switches::Reach;
+use crate::model::switches::Reach;
 
 use super::{Estimate, ModelInfo, Snapshot};
 
@@ -59,7 +59,7 @@ impl Snapshot {
 
     /// A new damage as the scope at the cursor has it. Its seed is the session's.
     pub fn aimed(&self, damage: Damage) -> Corruption {
-        let Reach { from, until } = Reach::of(self.scope, self.cursor);
+        let Reach { from, until } = self.scope.reach(self.cursor);
         Corruption {
             damage,
             severity: HALF,

@@ -43,7 +43,7 @@ pub struct SampleFrames {
     pub deviation: Arc<Vec<f32>>,
     /// Samples decoded.
     pub decoded: usize,
-    /// Blur index of the decoded mean: its gradient energy over the truth's; 1 is as sharp as the truth.
+    /// Blur index of the frame decoded from the mean path: its gradient energy over the truth's; 1 is as sharp as the truth.
     pub blur_of_mean_path: Option<f32>,
     /// Blur index of the mean of the decoded samples.
     pub blur_of_samples: Option<f32>,

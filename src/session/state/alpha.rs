@@ -2,7 +2,7 @@
 
 use super::reach;
 use crate::modality::Expert;
-use crate::session::switches::{Run, Switches, checked_alpha};
+use crate::model::switches::{Run, Switches, checked_alpha};
 
 /// Every run of an α that is not as trained.
 pub fn text(switches: &Switches) -> String {

@@ -7,7 +7,7 @@ use super::names;
 use super::reach;
 use crate::measure::corruption::{Corruption, Damage, applies};
 use crate::modality::Modality;
-use crate::session::switches::Reach;
+use crate::model::switches::Reach;
 
 /// One entry a modality.
 pub fn text(corruptions: &BTreeMap<Modality, Corruption>) -> String {

@@ -1,7 +1,7 @@
 //! The steps something reaches: nothing for all, `@4`, `@4-7`, `@4-`. Counted from 1, the last one included.
 
 use super::names::count;
-use crate::session::switches::Reach;
+use crate::model::switches::Reach;
 
 /// As it follows what reaches so far.
 pub fn text(reach: Reach) -> String {

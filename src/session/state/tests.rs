@@ -6,7 +6,7 @@ use proptest::prelude::*;
 use super::*;
 use crate::measure::corruption::Damage;
 use crate::modality::Expert;
-use crate::session::switches::Reach;
+use crate::model::switches::Reach;
 
 #[test]
 fn reads_what_the_documentation_shows() {

@@ -286,3 +286,32 @@ fn an_episode_that_cannot_be_read_is_told_and_left_again() {
     assert_eq!(text(&run(&mut session, [Step(1)])), "no episode is open");
     assert!(run(&mut session, [Episode(1)]).frames.truth.is_some());
 }
+
+#[test]
+fn what_a_state_says_of_every_episode_waits_for_one_that_can_be_read() {
+    let mut session = Session::new(
+        Arc::new(Torn(FakeSource::new(3))),
+        vec![Arc::new(FakePredictor::three())],
+    );
+    let state = "v=1;episode=square_01;step=5;alpha=vision:0;horizion=7";
+    let torn = run(&mut session, [Restore(state.to_owned())]);
+    assert!(torn.episode.is_none() && text(&torn).contains("cut off"));
+    let next = run(&mut session, [Episode(1)]);
+    assert_eq!((next.cursor, next.experts[0].alpha), (0, 0.0));
+    assert!(text(&next).contains("horizion"), "{}", text(&next));
+}
+
+#[test]
+fn steps_of_an_episode_that_is_left_unseen_are_forgotten() {
+    let mut session = Session::new(
+        Arc::new(FakeSource::new(3)),
+        vec![Arc::new(FakePredictor::three())],
+    );
+    // Nothing has been read yet.
+    let next = run(
+        &mut session,
+        [SeekTo(9), PredictHere, ToggleExpert(0), Episode(1)],
+    );
+    assert_eq!((next.cursor, next.context), (0, 4));
+    assert_eq!(next.experts[0].alpha, 0.0, "the whole episode's is of any");
+}

@@ -159,7 +159,12 @@ fn a_selection_is_begun_ended_and_forgotten() {
         (ended.selection, ended.looping),
         (Some((3, 8)), Looping::Selection)
     );
-    let forgotten = run(&mut session, [Select]);
+    let elsewhere = run(&mut session, [Episode(1)]);
+    assert_eq!(
+        (elsewhere.selection, elsewhere.looping),
+        (None, Looping::All)
+    );
+    let forgotten = run(&mut session, [Select, SeekTo(9), Select, Select]);
     assert_eq!(forgotten.selection, None);
 }
 

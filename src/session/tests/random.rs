@@ -59,7 +59,7 @@ fn check(session: &Session) -> Result<(), TestCaseError> {
     prop_assert!(snapshot.start < steps && snapshot.start + snapshot.horizon < steps);
     let model = session.model().unwrap();
     let factors = model.factors();
-    for step in 0..steps {
+    for step in model.frame_stack..steps {
         let active = factors
             .iter()
             .any(|&e| model.alpha(&session.settings.switches, e, step) > 0.0);

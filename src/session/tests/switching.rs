@@ -126,7 +126,7 @@ fn a_refusal_changes_nothing_but_the_message() {
     let snapshot = run(&mut session, [ToggleExpert(3)]);
     assert_eq!(
         text(&snapshot),
-        "prior stays on: it is the last active expert at step 1, and a belief needs one"
+        "prior stays on: it is the last active expert at step 2, and a belief needs one"
     );
 }
 

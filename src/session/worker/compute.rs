@@ -132,8 +132,7 @@ impl Worker {
         let trace = self.memo.trace(&sight, episode, predictor.as_ref())?;
         self.check()?;
         let settings = &request.settings;
-        let factors = info.factors();
-        if info.has_product() && settings.switches.first_silent_step(&factors).is_some() {
+        if info.silent_step(&settings.switches).is_some() {
             // The model under the cursor never is; one beside it may be, by switches that suit the other.
             let what = format!("the switches leave {} without an active expert", info.name);
             return Err(Stop::Fault(what));

@@ -85,10 +85,6 @@ pub fn infer_all(
         .collect()
 }
 
-fn gaussian<'a>((mean, log_var): (&'a [f32], &'a [f32])) -> Gaussian<'a> {
-    Gaussian { mean, log_var }
-}
-
 impl Inferred {
     /// Number of beliefs.
     pub fn len(&self) -> usize {
@@ -101,46 +97,38 @@ impl Inferred {
         (belief < self.len()).then_some(belief)
     }
 
-    /// What is multiplied at a belief: the sensor experts and the prior last, with α 0 for a prior that is none of them.
+    /// What is multiplied at a belief: the sensor experts and the prior last, each with the α it counts with.
     pub fn factors(&self, belief: usize) -> Vec<Factor<'_>> {
-        let alphas = self.alphas.row(belief);
-        let sensors = self.trace.experts.iter();
-        let all = sensors.chain([&self.beliefs.prior]).zip(alphas);
-        let mut factors: Vec<Factor> = all
-            .map(|(gaussians, &alpha)| Factor {
-                gaussian: gaussian(gaussians.row(belief)),
-                alpha,
-            })
-            .collect();
-        if let (false, Some(prior)) = (self.prior_expert, factors.last_mut()) {
-            prior.alpha = 0.0;
-        }
-        factors
+        let (trace, prior_expert) = (&self.trace, self.prior_expert);
+        self.beliefs
+            .factors(trace, &self.alphas, prior_expert, belief)
     }
 
     /// Each expert's share of a belief's precision per latent dimension, the prior last (D1).
     pub fn shares(&self, belief: usize) -> Vec<Vec<f32>> {
-        let factors = self.factors(belief);
-        let alphas: Vec<f32> = factors.iter().map(|factor| factor.alpha).collect();
-        let log_vars: Vec<&[f32]> = factors.iter().map(|f| f.gaussian.log_var).collect();
-        precision_shares(&alphas, &log_vars)
+        precision_shares(&self.factors(belief))
     }
 
-    /// Each expert's share of the position that a probe's `weights` read, the prior last (D1); none where they read nothing.
-    pub fn position_shares(&self, belief: usize, weights: &[f32]) -> Option<Vec<f32>> {
+    /// The same of the position that a probe's `weights` read, made of the belief's `shares` (D1); none where they read nothing.
+    pub fn position_shares(
+        &self,
+        belief: usize,
+        shares: &[Vec<f32>],
+        weights: &[f32],
+    ) -> Option<Vec<f32>> {
         let log_var = self.posterior(belief).log_var;
         let variance: Vec<f32> = log_var.iter().map(|v| v.exp()).collect();
-        position_shares(&self.shares(belief), weights, &variance)
+        position_shares(shares, weights, &variance)
     }
 
     /// The prediction before a belief's observations.
     pub fn prior(&self, belief: usize) -> Gaussian<'_> {
-        gaussian(self.beliefs.prior.row(belief))
+        self.beliefs.prior.gaussian(belief)
     }
 
     /// The belief.
     pub fn posterior(&self, belief: usize) -> Gaussian<'_> {
-        gaussian(self.beliefs.posterior.row(belief))
+        self.beliefs.posterior.gaussian(belief)
     }
 
     /// Index of the belief that a rollout starts from.

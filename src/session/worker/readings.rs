@@ -209,7 +209,8 @@ impl Reader<'_> {
 
     fn position_shares(&self, belief: usize) -> Option<Vec<f32>> {
         let weights = self.predictor.position_weights()?;
-        self.inferred.position_shares(belief, weights)
+        let shares = self.inferred.shares(belief);
+        self.inferred.position_shares(belief, &shares, weights)
     }
 
     /// NEES of the position with R_p and without (D11); NaN where there is none.

@@ -1,6 +1,7 @@
 //! How sure the rollout is at the cursor, in three ways, and what its samples look like.
 
 use super::Report;
+use crate::measure::spread::axis_sigmas;
 use crate::session::snapshot::Snapshot;
 
 /// Tells it, where a view has asked for it.
@@ -20,7 +21,7 @@ pub(super) fn tell(report: &mut Report, snapshot: &Snapshot) {
     .enumerate()
     {
         let label = format!("rollout {name} sigma");
-        let sigma = at_cursor(covariances).map(|[xx, _, yy]| [xx.sqrt(), yy.sqrt()]);
+        let sigma = at_cursor(covariances).map(axis_sigmas);
         report.place(&format!("{label} without R_p"), sigma);
         report.number(&format!("{label} of z"), of_z.map(|of_z| of_z[i]), "");
     }

@@ -23,6 +23,7 @@ use super::super::theme::{PREDICTION, dim, strong};
 use super::super::view::Pane;
 use super::super::words::{Entry, legend_below};
 use super::{cursor_ahead, labels};
+use crate::measure::spread::distance_sigma;
 use crate::session::snapshot::Snapshot;
 use crate::session::snapshot::spread::SpreadView;
 
@@ -32,7 +33,7 @@ fn sigmas(spread: &SpreadView) -> (bool, Vec<[f32; 3]>) {
         &spread.head,
         std::iter::zip(&spread.propagated, &spread.sampled),
     );
-    let sigma = |[xx, _, yy]: &[f32; 3]| (xx + yy).max(0.0).sqrt() * 100.0;
+    let sigma = |covariance: &[f32; 3]| 100.0 * distance_sigma(*covariance);
     let positions: Vec<[f32; 3]> = positions
         .map(|(head, (propagated, sampled))| [sigma(head), sigma(propagated), sigma(sampled)])
         .collect();

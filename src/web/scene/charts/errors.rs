@@ -1,6 +1,7 @@
 //! How far the estimates are off over the episode: positions, then frames.
 
 use super::{BELIEF, Chart, PREDICTION, line};
+use crate::measure::spread::distance_sigma;
 use crate::session::snapshot::{Estimate, PositionView, Snapshot};
 use crate::web::protocol::uplot::{Series, UplotProps};
 
@@ -60,7 +61,7 @@ pub fn distances_cm<'a>(
     })
 }
 
-/// The distance that a covariance `[xx, xy, yy]` in m² claims, as a root of its mean square.
-pub fn claim_cm([xx, _, yy]: [f32; 3]) -> f64 {
-    100.0 * f64::from(xx + yy).max(0.0).sqrt()
+/// The distance that a covariance in m² claims, as a root of its mean square.
+pub fn claim_cm(covariance: [f32; 3]) -> f64 {
+    100.0 * f64::from(distance_sigma(covariance))
 }

@@ -5,7 +5,9 @@
 
 use std::collections::BTreeMap;
 
-use super::command::Scope;
+use serde::{Deserialize, Serialize};
+
+use super::trace::Alphas;
 use crate::modality::Expert;
 
 /// α as trained. Values are compared as they were set; none is computed.
@@ -38,21 +40,6 @@ impl Reach {
         from: 0,
         until: None,
     };
-
-    /// What a scope means at a step.
-    pub fn of(scope: Scope, step: usize) -> Self {
-        match scope {
-            Scope::Episode => Self::EPISODE,
-            Scope::Onward => Self {
-                from: step,
-                until: None,
-            },
-            Scope::Frame => Self {
-                from: step,
-                until: Some(step + 1),
-            },
-        }
-    }
 }
 
 /// A stretch of steps with one α.
@@ -65,7 +52,10 @@ pub struct Run {
 }
 
 /// α of every expert at every step; an expert that was never touched is as trained.
-#[derive(Clone, Debug, Default, PartialEq)]
+///
+/// Written as the stretches that are not as trained.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(from = "Vec<Stretch>", into = "Vec<Stretch>")]
 pub struct Switches {
     /// For each expert the steps at which a new α begins, the first at step 0, neighbours unequal.
     starts: BTreeMap<Expert, Starts>,
@@ -146,22 +136,72 @@ impl Switches {
             .collect()
     }
 
-    /// The first step at which none of these experts is active, if there is one.
-    pub fn first_silent_step(&self, experts: &[Expert]) -> Option<usize> {
-        let mut changes: Vec<usize> = vec![0];
-        changes.extend(
-            experts
-                .iter()
-                .filter_map(|e| self.starts.get(e))
-                .flatten()
-                .map(|s| s.0),
-        );
-        changes.sort_unstable();
-        changes.into_iter().find(|&step| {
-            experts
-                .iter()
-                .all(|&expert| self.alpha(expert, step) <= 0.0)
-        })
+    /// The first step from `first` on at which none of these experts is active, if there is one.
+    pub fn silent_step(&self, experts: &[Expert], first: usize) -> Option<usize> {
+        let starts = experts.iter().filter_map(|expert| self.starts.get(expert));
+        let changes = starts.flatten().map(|&(start, _)| start.max(first));
+        let is_silent = |&step: &usize| experts.iter().all(|&e| self.alpha(e, step) == 0.0);
+        changes.chain([first]).filter(is_silent).min()
+    }
+
+    /// The experts that are not as trained at some step.
+    pub fn switched(&self) -> impl Iterator<Item = Expert> {
+        self.starts.keys().copied()
+    }
+
+    /// Leaves these experts' α alone, and all others as trained.
+    pub fn retain(&mut self, is_kept: impl Fn(Expert) -> bool) {
+        self.starts.retain(|&expert, _| is_kept(expert));
+        self.kept.retain(|&expert, _| is_kept(expert));
+    }
+
+    /// α of these experts at some steps, a row a step.
+    pub fn alphas(&self, experts: &[Expert], steps: std::ops::Range<usize>) -> Alphas {
+        let row = |step| experts.iter().map(move |&expert| self.alpha(expert, step));
+        Alphas {
+            experts: experts.len(),
+            values: steps.flat_map(row).collect(),
+        }
+    }
+}
+
+/// As switches are written: α of an expert over some steps.
+#[derive(Serialize, Deserialize)]
+struct Stretch {
+    expert: Expert,
+    from: usize,
+    until: Option<usize>,
+    alpha: f32,
+}
+
+impl From<Switches> for Vec<Stretch> {
+    fn from(switches: Switches) -> Self {
+        let of = |expert| {
+            let runs = switches.runs(expert).into_iter();
+            runs.map(move |Run { reach, alpha }| Stretch {
+                expert,
+                from: reach.from,
+                until: reach.until,
+                alpha,
+            })
+        };
+        switches.switched().flat_map(of).collect()
+    }
+}
+
+impl From<Vec<Stretch>> for Switches {
+    fn from(stretches: Vec<Stretch>) -> Self {
+        let mut switches = Self::default();
+        for Stretch {
+            expert,
+            from,
+            until,
+            alpha,
+        } in stretches
+        {
+            switches.set(expert, Reach { from, until }, alpha);
+        }
+        switches
     }
 }
 
@@ -225,10 +265,26 @@ mod tests {
         let both = [V, Expert::Prior];
         switches.set(V, reach(2, None), 0.0);
         switches.set(Expert::Prior, reach(0, Some(3)), 0.0);
-        assert_eq!(switches.first_silent_step(&both), Some(2));
+        assert_eq!(switches.silent_step(&both, 0), Some(2));
+        assert_eq!(switches.silent_step(&both, 3), None);
         switches.set(V, reach(2, Some(3)), 0.1);
-        assert_eq!(switches.first_silent_step(&both), None);
-        assert_eq!(switches.first_silent_step(&[V]), Some(3));
+        assert_eq!(switches.silent_step(&both, 0), None);
+        assert_eq!(switches.silent_step(&[V], 0), Some(3));
+        assert_eq!(switches.silent_step(&[V], 5), Some(5));
+    }
+
+    #[test]
+    fn what_is_written_reads_as_it_was() -> serde_json::Result<()> {
+        let mut switches = Switches::default();
+        switches.set(V, reach(3, None), 0.0);
+        switches.set(Expert::Prior, reach(5, Some(6)), 0.5);
+        let text = serde_json::to_string(&switches)?;
+        assert_eq!(
+            text,
+            r#"[{"expert":"vision","from":3,"until":null,"alpha":0.0},{"expert":"prior","from":5,"until":6,"alpha":0.5}]"#
+        );
+        assert_eq!(serde_json::from_str::<Switches>(&text)?, switches);
+        Ok(())
     }
 
     proptest! {
