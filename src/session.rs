@@ -126,12 +126,6 @@ enum Pending {
     Restoration(Box<Restoration>),
 }
 
-impl Pending {
-    fn is_restoration(&self) -> bool {
-        matches!(self, Self::Restoration(_))
-    }
-}
-
 /// What a generation of requests asks for. The cursor only orders the work, unless something is looked at that is
 /// computed for its step alone.
 #[derive(PartialEq)]
@@ -394,7 +388,8 @@ impl Session {
             }
         } else if done {
             // What a state string says of every episode waits for one that can be read.
-            self.pending.retain(Pending::is_restoration);
+            self.pending
+                .retain(|pending| matches!(pending, Pending::Restoration(_)));
         }
         true
     }
